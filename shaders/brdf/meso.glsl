@@ -1,7 +1,7 @@
 /*
- * meso.glsl: what a relief too small for polygons does to the texels of its material, by the angle it
- * is seen at. tools/meso/model.h explains the forms and is the twin in C; masu-meso finds the numbers.
- * What comes out goes through pack.glsl, which makes anything finite.
+ * meso.glsl: view-dependent changes to material texels by a relief too small for polygons.
+ * tools/meso/model.h explains the equations and is the C copy; masu-meso fits the coefficients. The
+ * results pass through pack.glsl, which makes any value finite.
  */
 #ifndef MASU_MESO_GLSL
 #define MASU_MESO_GLSL
@@ -10,14 +10,14 @@
 
 struct masu_meso_curves {
     vec4 tilt;      /* w: roughness of the facets */
-    vec4 rough;     /* w: what the spread of lost normals takes of diffuse light, from above */
-    vec4 open;      /* of ambient occlusion; w: alpha of the shadow */
-    vec4 gain;      /* of diffuse light; w: offset of the shadow */
-    vec4 tint;      /* of the colour seen from the side; w: more of that spread, by y */
+    vec4 rough;     /* w: loss of diffuse light by the spread of lost normals, from above */
+    vec4 open;      /* ambient occlusion; w: alpha of the shadow */
+    vec4 gain;      /* diffuse light; w: offset of the shadow */
+    vec4 tint;      /* colour at grazing angles; w: additional loss, by y */
     vec4 specular;  /* w: and by y^2 */
 };
 
-/* What the curves change. */
+/* The surface parameters that the curves change. */
 struct masu_meso_surface {
     vec3 normal;
     vec3 color;      /* linear; pack.glsl clamps it */
@@ -32,10 +32,10 @@ float masu_meso_poly(vec3 c, float y)
     return y * (c.x + y * (c.y + y * c.z));
 }
 
-/* view: unit, to the viewer; x: its cosine with the polygon's normal, on the viewer's side. Of `s`
- * normal, color, roughness (0..1) and occlusion (0..1) are read; its normal is left for the caller to
- * bring to unit length. The blob's numbers are finite and within +-1000, so no intermediate leaves the
- * range of floats and none is guarded by itself. */
+/* view: unit, towards the viewer; x: its cosine with the polygon's normal, on the viewer's side.
+ * Reads normal, color, roughness (0..1) and occlusion (0..1) of `s`; the caller normalises its
+ * normal. The coefficients in the blob are finite and within +-1000, so no intermediate overflows
+ * and none needs a guard. */
 void masu_meso_bend(masu_meso_curves m, vec3 view, float x, inout masu_meso_surface s)
 {
     float y = 1.0 - clamp(x, 0.0, 1.0);
@@ -55,7 +55,7 @@ void masu_meso_bend(masu_meso_curves m, vec3 view, float x, inout masu_meso_surf
     s.shadow = clamp(m.gain.w - m.open.w * closed, 0.0, 1.0);
 }
 
-/* What of a light's arrives: more along the view, where no shadow is seen. */
+/* The share of a light that arrives: more along the view, from which no shadow is visible. */
 float masu_meso_shadow(float shadow, vec3 view, vec3 light)
 {
     float along = dot(view, light);

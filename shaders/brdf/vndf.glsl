@@ -1,19 +1,20 @@
 /*
- * vndf.glsl: directions for the specular lobe of bsdf.glsl, drawn where a viewer's visible normals
- * reflect to, and what each is worth. Space is local: the normal is +z (masu_axes).
+ * vndf.glsl: importance sampling of the specular lobe of bsdf.glsl by visible normals
+ * (masu_vndf_reflect): light directions, their weights and densities. The space is local: the
+ * normal is +z (masu_axes).
  *
- * Visible normals of GGX are those of a sphere after a stretch by alpha, and a uniform point of a
- * spherical cap plus the view is one of the sphere's (Dupuy and Benyoub, "Sampling Visible GGX
+ * A stretch by alpha maps the visible normals of GGX to those of a sphere, and the sum of the view
+ * and a uniform point of a spherical cap is such a normal (Dupuy and Benyoub, "Sampling Visible GGX
  * Normals with Spherical Caps", HPG 2023). On rough surfaces much of the cap reflects below the
- * surface, half of it at alpha 1; the cap is cut where no reflection above the surface can come
- * from it (Eto and Tokuyoshi, "Bounded VNDF Sampling for Smith-GGX Reflections", SIGGRAPH Asia
- * 2023). The weight only falls by that, so it stays below 1.
+ * surface, half of it at alpha 1; the part of the cap that cannot reflect above the surface is cut
+ * off (Eto and Tokuyoshi, "Bounded VNDF Sampling for Smith-GGX Reflections", SIGGRAPH Asia 2023).
+ * The cut only lowers the weight, so it remains below 1.
  *
  *   weight = lobe * N.l / pdf, without Fresnel; its mean is the table's 1 - loss (tables.glsl)
  *
- * Total: a view below the surface counts as one 1e-4 above it, as in bsdf.glsl, NaN as the normal;
- * weights are within 0..1, directions and densities finite. No vector arithmetic, so that tests can
- * compile the text as C and draw millions of directions.
+ * Defined for every input: a view below the surface is treated as 1e-4 above it, as in bsdf.glsl,
+ * NaN as the normal; weights are within 0..1, directions and densities finite. No vector
+ * arithmetic, so that tests can compile the code as C and draw millions of directions.
  */
 #ifndef MASU_VNDF_GLSL
 #define MASU_VNDF_GLSL
@@ -21,26 +22,26 @@
 #include "brdf/ggx.glsl"
 #include "shared/guard.glsl"
 
-/* Up to here a lobe is taken for a mirror: roughness 0.045 and less, which the tables and the light
- * of lamps take for one roughness, too. Half of that lobe is within 0.23 degrees of the mirror
- * direction. One ray without noise is what roughness 0 asks for. */
+/* Up to here a lobe is treated as a mirror: roughness 0.045 and less, which the tables and the
+ * lights also treat as one roughness. Half of that lobe is within 0.23 degrees of the mirror
+ * direction. A mirror needs one ray without noise. */
 const float masu_mirror_alpha = 0.00203;
 
 struct masu_axes {
     vec3 t, b, n;
 };
 
-/* A light direction, what its radiance is to be multiplied by (and by Fresnel's term), its density
- * per steradian. A weight of 0: l is below the surface, no ray is needed. */
+/* A light direction, the weight of its radiance (before Fresnel), its density per steradian. A
+ * weight of 0: l is below the surface, no ray is needed. */
 struct masu_vndf_ray {
     vec3 l;
     float weight;
     float pdf;
 };
 
-/* Right-handed, for every unit normal (Duff et al., "Building an Orthonormal Basis, Revisited",
- * JCGT 6-1, 2017). Frisvad's, which has no sign, loses all digits near n.z = -1. What is no
- * direction is +z. */
+/* Right-handed basis for every unit normal (Duff et al., "Building an Orthonormal Basis,
+ * Revisited", JCGT 6-1, 2017). Frisvad's, which has no sign, loses all digits near n.z = -1. An
+ * invalid direction becomes +z. */
 masu_axes masu_axes_of(vec3 normal)
 {
     masu_axes f;
@@ -66,7 +67,7 @@ vec3 masu_axes_out(masu_axes f, vec3 local)
                 f.t.z * local.x + f.b.z * local.y + f.n.z * local.z);
 }
 
-/* Whatever it was: unit, above the surface. */
+/* Makes any vector a unit vector above the surface. */
 vec3 masu_vndf_view(vec3 v)
 {
     float x = masu_sane(v.x, -1.0, 1.0), y = masu_sane(v.y, -1.0, 1.0);
@@ -75,14 +76,15 @@ vec3 masu_vndf_view(vec3 v)
     return vec3(x * r, y * r, z * r);
 }
 
-/* That of the lobe, down to the bit: of one a little wider the peak is lower, and a mirror's light over its
- * density would be half a percent too much. */
+/* Exactly the alpha of the lobe: with a slightly larger one the peak is lower, and the ratio of a
+ * mirror's light and its density would be half a percent too high. */
 float masu_vndf_alpha(float alpha)
 {
     return masu_sane(alpha, masu_alpha(0.0), 1.0);
 }
 
-/* How much of the view's height the cap reaches down: 1 is the whole cap. v from masu_vndf_view. */
+/* Extent of the cap below the equator as a share of the view's height: 1 is the whole cap. v from
+ * masu_vndf_view. */
 float masu_vndf_bound(vec3 v, float alpha)
 {
     float a2 = alpha * alpha;
@@ -90,13 +92,13 @@ float masu_vndf_bound(vec3 v, float alpha)
     return (1.0 - a2) * s2 / (s2 + a2 * v.z * v.z);
 }
 
-/* The density of l is D / (2 this). */
+/* The density of l is D divided by twice this value. */
 float masu_vndf_norm(vec3 v, float alpha)
 {
     return masu_vndf_bound(v, alpha) * v.z + masu_ggx_root(alpha * alpha, v.z);
 }
 
-/* The three that follow: v from masu_vndf_view, a from masu_vndf_alpha. */
+/* For the next three functions v is from masu_vndf_view, a from masu_vndf_alpha. */
 
 vec3 masu_vndf_normal(vec3 v, float a, vec2 u)
 {
@@ -105,8 +107,8 @@ vec3 masu_vndf_normal(vec3 v, float a, vec2 u)
     wx *= r;
     wy *= r;
     float wz = v.z * r;
-    /* Of the cap, whose pole is +z: down to -bound * wz. down is 1 - z: sqrt(1 - z^2) would cancel.
-     * sin and cos are the most precise within +-pi. */
+    /* A point of the cap, whose pole is +z: down to -bound * wz. down is 1 - z: sqrt(1 - z^2) would
+     * cancel. sin and cos are the most precise within +-pi. */
     float down = masu_sane(u.y, 0.0, 1.0) * (1.0 + masu_vndf_bound(v, a) * wz);
     float radius = sqrt(max(down * (2.0 - down), 0.0));
     float phi = 6.2831853 * masu_sane(u.x, 0.0, 1.0) - 3.1415927;
@@ -115,14 +117,14 @@ vec3 masu_vndf_normal(vec3 v, float a, vec2 u)
     return masu_normalize(vec3(a * hx, a * hy, hz), vec3(0.0, 0.0, 1.0));
 }
 
-/* Of the direction that h reflects v to. */
+/* Density of the direction that h reflects v to. */
 float masu_vndf_density(vec3 v, vec3 h, float a)
 {
     float k = masu_ggx_peak(max(h.z, 0.0), h.x * h.x + h.y * h.y, a);
     return k * k * (0.5 / 3.1415927) / masu_vndf_norm(v, a);
 }
 
-/* lobe * N.l / density: D cancels, and what stays is nowhere above 1, since bound is at most 1 and
+/* lobe * N.l / density: D cancels, and the rest is at most 1, since bound is at most 1 and
  * masu_ggx_root(l) at least n_l. */
 float masu_vndf_worth(vec3 v, float n_l, float a)
 {
@@ -130,7 +132,7 @@ float masu_vndf_worth(vec3 v, float n_l, float a)
     return masu_sane(l * masu_vndf_norm(v, a) / masu_ggx_masking(a, l, v.z), 0.0, 1.0);
 }
 
-/* A visible normal, unit; u of 0..1 each. */
+/* A visible normal, unit; u: 0..1 each. */
 vec3 masu_vndf_sample(vec3 v_local, float alpha, vec2 u)
 {
     if (!(alpha > masu_mirror_alpha)) {
@@ -139,9 +141,9 @@ vec3 masu_vndf_sample(vec3 v_local, float alpha, vec2 u)
     return masu_vndf_normal(masu_vndf_view(v_local), masu_vndf_alpha(alpha), u);
 }
 
-/* Of the reflected direction l, per steradian; 0 below the surface, where l is of no use. A
- * mirror's is that of the smoothest lobe. Its integral over the hemisphere is 1 less what is lost
- * below. */
+/* Density of the reflected direction l, per steradian; 0 below the surface. A mirror has the
+ * density of the smoothest lobe. Its integral over the hemisphere is 1 minus the share of
+ * directions below the surface. */
 float masu_vndf_pdf(vec3 v_local, vec3 l, float alpha)
 {
     if (!(l.z > 0.0)) {
@@ -152,8 +154,8 @@ float masu_vndf_pdf(vec3 v_local, vec3 l, float alpha)
     return masu_vndf_density(v, h, masu_vndf_alpha(alpha));
 }
 
-/* What the light from l is worth, 0..1. A mirror's is that of the smoothest lobe, too, so that
- * there is no step beside it. */
+/* Weight of the light from l, 0..1. A mirror has the weight of the smoothest lobe, so that there is
+ * no step. */
 float masu_vndf_weight(vec3 v_local, vec3 l, float alpha)
 {
     if (!(l.z > 0.0)) {
@@ -162,8 +164,8 @@ float masu_vndf_weight(vec3 v_local, vec3 l, float alpha)
     return masu_vndf_worth(masu_vndf_view(v_local), l.z, masu_vndf_alpha(alpha));
 }
 
-/* All of it: one ray of the lobe. The density is that of masu_vndf_pdf, and more exact where the
- * lobe is narrow: v + l has lost digits that h has. */
+/* Samples one ray of the lobe. The density is the same as from masu_vndf_pdf, and more exact for a
+ * narrow lobe: v + l has lost digits that h has. */
 masu_vndf_ray masu_vndf_reflect(vec3 v_local, float alpha, vec2 u)
 {
     masu_vndf_ray ray;

@@ -1,10 +1,11 @@
 /*
- * ambient.glsl: light from everywhere: what of it arrives at a surface, and what a surface mirrors.
+ * ambient.glsl: light from the sky at a surface: irradiance (masu_ambient) and reflection
+ * (masu_ambient_mirror).
  *
- * frame.irradiance holds irradiance / pi by the normal: nine coefficients of spherical harmonics, and
- * in their w what order 2 cannot hold of a sky: a lobe around the sun (rgb in 0..2, direction in 3..5)
- * and P4 of y (rgb in 6..8). src/frame/sky.h says how they are meant. Of a constant ambient light only the
- * first is not 0.
+ * frame.irradiance holds irradiance / pi by the normal: nine coefficients of spherical harmonics,
+ * and in their w the parts of a sky that exceed order 2: a lobe around the sun (rgb in 0..2,
+ * direction in 3..5) and P4 of y (rgb in 6..8). src/frame/sky.h defines them. For a constant
+ * ambient light only the first is not 0.
  *
  * After light/sky.glsl.
  */
@@ -37,7 +38,7 @@ vec3 masu_band_2(vec3 n)
            frame.irradiance[8].rgb * (n.x * n.x - n.z * n.z);
 }
 
-/* Irradiance / pi on a surface of unit normal n: what a white surface reflects. */
+/* Irradiance / pi on a surface of unit normal n: the light that a white surface reflects. */
 vec3 masu_ambient(vec3 n)
 {
     float y2 = n.y * n.y;
@@ -52,9 +53,9 @@ vec3 masu_ambient(vec3 n)
     return max(masu_sane(sum, -1e9, 1e9), vec3(0.0));
 }
 
-/* Bands 1 and 2 of what a GGX lobe of a roughness averages, seen from above and weighted by the
- * cosine (Karis, Real Shading in Unreal Engine 4, SIGGRAPH 2013 course): fits by us, within 0.002 and
- * 0.006. At 1 they are those of the cosine itself. */
+/* Bands 1 and 2 of a GGX lobe's average for a roughness, viewed from above and weighted by the
+ * cosine (Karis, Real Shading in Unreal Engine 4, SIGGRAPH 2013 course): our fits, within 0.002 and
+ * 0.006. At roughness 1 they equal the bands of the cosine. */
 vec2 masu_lobe_bands(float roughness)
 {
     float r = roughness;
@@ -64,8 +65,8 @@ vec2 masu_lobe_bands(float roughness)
     return clamp(1.0 - lost, vec2(0.0), vec2(1.0));
 }
 
-/* The sky as order 2 has it, blurred by lobes of those bands. The glow's lobe has the bands
- * 1/4 + w^2 / 12, 1/2 and 5/16 - 5/24 w^2 + w^4 / 16 over Legendre's functions. */
+/* The order-2 sky, blurred by lobes of those bands. The lobe of the glow has the Legendre bands 1/4
+ * + w^2 / 12, 1/2 and 5/16 - 5/24 w^2 + w^4 / 16. */
 vec3 masu_ambient_bands(vec3 d, vec2 bands)
 {
     const float w2 = MASU_SKY_ROUND * MASU_SKY_ROUND;
@@ -75,13 +76,13 @@ vec3 masu_ambient_bands(vec3 d, vec2 bands)
     vec3 one = masu_band_1(d) + glow * (0.5 * c);
     vec3 two = masu_band_2(d) + glow * ((0.3125 - 5.0 / 24.0 * w2 + w2 * w2 / 16.0) *
                                         (1.5 * c * c - 0.5));
-    /* Irradiance has 2/3 and 1/4 of radiance's. */
+    /* The bands of irradiance are 2/3 and 1/4 of the bands of radiance. */
     return max(zero + one * (1.5 * bands.x) + two * (4.0 * bands.y), vec3(0.0));
 }
 
-/* Radiance of the sky by the k-th of nine normalised spherical harmonics: 1; y, z, x; xy, yz, 3z^2 - 1,
- * xz, x^2 - y^2 (Ramamoorthi and Hanrahan 2001), for what has tables of these: light/probes.glsl. The
- * glow as its own bands have it, the P4 left out. */
+/* Radiance of the sky as the k-th of nine normalised spherical harmonics: 1; y, z, x; xy, yz, 3z^2
+ * - 1, xz, x^2 - y^2 (Ramamoorthi and Hanrahan 2001), for users with tables of these:
+ * light/probes.glsl. The glow has its own bands; P4 is omitted. */
 vec3 masu_sky_harmonic(uint k)
 {
     const float w2 = MASU_SKY_ROUND * MASU_SKY_ROUND;
@@ -106,8 +107,8 @@ vec3 masu_sky_harmonic(uint k)
     }
 }
 
-/* What a surface of a roughness sees of the sky in a mirror direction, without the sun: 0 is the sky
- * itself, 1 its irradiance / pi. */
+/* The sky that a surface of a roughness reflects from a mirror direction, without the sun: 0 is the
+ * sky itself, 1 its irradiance / pi. */
 vec3 masu_ambient_mirror(vec3 direction, float roughness)
 {
     if (!masu_sky_is_analytic()) {
@@ -120,7 +121,8 @@ vec3 masu_ambient_mirror(vec3 direction, float roughness)
     float blend = smoothstep(0.15, 0.85, roughness);
     vec3 blurred = vec3(0.0);
     if (blend < 1.0) {
-        /* Three looks by powers cost more than all the rest of a pixel's light: from 0.4 on a table has it. */
+        /* Three evaluations with powers cost more than all other lighting of a pixel: from 0.4 on a
+         * table is read. */
         float tabled = clamp(10.0 * roughness - 3.0, 0.0, 1.0);
         if (tabled < 1.0) {
             blurred = (1.0 - tabled) * masu_sky_blurred(direction, bands.x, bands.y);
@@ -129,7 +131,7 @@ vec3 masu_ambient_mirror(vec3 direction, float roughness)
             blurred += tabled * masu_sky_rough(direction);
         }
     }
-    /* Last: what waits for the looks takes registers. */
+    /* Last: earlier it would occupy registers during the evaluations. */
     return mix(blurred, masu_sane(masu_ambient_bands(direction, bands), 0.0, 1e9), blend);
 }
 

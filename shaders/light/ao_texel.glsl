@@ -1,24 +1,26 @@
 /*
- * ao_texel.glsl: what ao.comp and ao_upsample.comp share: view space, and the texel between them.
+ * ao_texel.glsl: shared by ao.comp and ao_upsample.comp: view space, and the texel format between
+ * them.
  *
- * Of the depth's 31 bits without its sign the upper 22 are kept: 14 of the mantissa, so that a view
- * z is off by at most 1 / 32768 of itself, a thirtieth of a pixel's width at 1080 lines. The other
- * ten hold the seen part in steps of 1 / 1023. Of an orthographic camera, a narrow lens far behind its near plane, they
- * are those of 1 - depth, and the error is that share of the distance from the near plane.
+ * Of the depth's 31 bits without its sign the upper 22 are stored: 14 of the mantissa, so a view z
+ * has a relative error of at most 1 / 32768, a thirtieth of a pixel's width at 1080 lines. The
+ * other ten hold the visibility in steps of 1 / 1023. An orthographic camera is a narrow lens far
+ * behind its near plane; there 1 - depth is stored, and the error is that share of the distance
+ * from the near plane.
  */
 #ifndef MASU_AO_TEXEL_GLSL
 #define MASU_AO_TEXEL_GLSL
 
 layout(constant_id = 22) const bool masu_flat_lens = false;
 
-/* Beyond this nothing is looked at: the squares below stay within fp32. */
+/* No samples beyond this: the squares below remain within fp32. */
 const float ao_farthest = 1e15;
 
 struct ao_lens {
     vec2 size;   /* pixels */
     vec2 pixels; /* per unit of x / z and y / z */
     vec2 scale;  /* x / z and y / z of a pixel's width */
-    vec2 corner; /* and of the picture's upper left corner */
+    vec2 corner; /* and of the image's upper left corner */
 };
 
 ao_lens ao_lens_of(uvec2 size)
@@ -32,7 +34,7 @@ ao_lens ao_lens_of(uvec2 size)
     return lens;
 }
 
-/* View z of a depth, above 0; at least ao_farthest where nothing is, or no number. */
+/* View z of a depth, above 0; at least ao_farthest without a surface, or for NaN. */
 float ao_view_z(float depth)
 {
     float z = depth > 0.0 ? frame.forward.w / depth : ao_farthest;

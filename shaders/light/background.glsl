@@ -1,16 +1,17 @@
 /*
- * background.glsl: the lit picture at 1/2 to 1/64 of its size, side by side in one image: what is seen through rough
- * glass; with refracting glass in the scene also at its full size. background.comp writes it, transparents.frag reads it.
+ * background.glsl: the lit image at 1/2 to 1/64 of its size, side by side in one texture: the
+ * background behind rough glass; with refracting glass in the scene also at full size.
+ * background.comp writes it, transparents.frag reads it.
  *
- * A tile of 64x64 pixels has 32x32, 16x16 ... 1x1 texels at the levels 1 to 6. The largest level takes two thirds of the
- * height, the others stand below it from left to right.
+ * A tile of 64x64 pixels has 32x32, 16x16 ... 1x1 texels at the levels 1 to 6. The largest level
+ * takes two thirds of the height, the others are below it from left to right.
  */
 #ifndef MASU_BACKGROUND_GLSL
 #define MASU_BACKGROUND_GLSL
 
 layout(constant_id = 22) const bool masu_flat_lens = false;
 
-/* What alpha holds for a depth, and back: of an orthographic camera depths are near 1. */
+/* Converts a depth to the value in alpha, and back: depths of an orthographic camera are near 1. */
 float masu_background_depth(float depth)
 {
     return masu_flat_lens ? 1.0 - depth : depth;

@@ -1,10 +1,12 @@
 /*
- * environment.glsl: a sky from a picture: radiance over the octahedron of directions, +y at its middle,
- * as mips for rising roughness (src/scene/blob.h: masu_blob_environment_map), the texels of
- * one mip behind the other, each 9 bits of r, g and b and 5 of their exponent; filtering is done here.
+ * environment.glsl: a sky from an environment map: radiance over the octahedron of directions, +y
+ * at its centre, with mips for rising roughness (src/scene/blob.h: masu_blob_environment_map). The
+ * texels of the mips follow each other, each 9 bits of r, g and b and 5 of their exponent; the
+ * shader filters them.
  *
- * They lie at the end of the buffer of tables. Without such a map the code is compiled away. Size and number of mips
- * are in the w of the frame's sky colours. Any direction and any texel give finite light.
+ * They are at the end of the buffer of tables. Without a map the code is compiled away. Size and
+ * number of mips are in the w of the frame's sky colours. Any direction and any texel give finite
+ * light.
  *
  * After shared/guard.glsl and shared/globals.glsl.
  */
@@ -23,7 +25,7 @@ vec3 masu_unpack_9995(uint texel)
     return vec3(texel & 511u, texel >> 9 & 511u, texel >> 18 & 511u) * unit;
 }
 
-/* Across an edge of the octahedron's square lies the same edge, the other way round. */
+/* Index of a texel; across an edge of the octahedron's square is the same edge, reversed. */
 uint masu_environment_at(ivec2 at, int size, int first)
 {
     if (at.x < 0 || at.x >= size) {
@@ -55,7 +57,7 @@ vec3 masu_environment_mip(vec2 square, int mip, int largest)
     return mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
 }
 
-/* Radiance towards a direction, blurred as a surface of a roughness mirrors it. */
+/* Radiance towards a direction, blurred like the reflection of a surface of that roughness. */
 vec3 masu_environment(vec3 direction, float roughness)
 {
     vec3 v = masu_sane(direction, -1e4, 1e4);

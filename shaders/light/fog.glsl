@@ -1,23 +1,23 @@
 /*
- * fog.glsl: air whose density falls with height: density * exp(-falloff * (y - fog height)), clear
- * nearer than a start. What it takes of the light along a straight ray has a closed form (Lengyel,
- * "Unified Distance Formulas for Halfspace Fog", JGT 12-2, 2007, has that of linear density):
+ * fog.glsl: fog whose density falls with height: density * exp(-falloff * (y - fog height)), clear
+ * up to a start distance. The optical depth along a straight ray has a closed form (Lengyel,
+ * "Unified Distance Formulas for Halfspace Fog", JGT 12-2, 2007, for linear density):
  *
  *   depth = density(lower end) * length * mean(falloff * |climb| * length),  mean(x) = (1 - e^-x) / x
  *
- * From the lower end upwards, whichever way the ray goes: from the eye, a ray that goes down would be a
- * small number times one that overflows. mean(x) is a series where 1 - e^-x cancels, so that the
- * horizon is a ray like any other.
+ * Evaluated from the lower end upwards in either direction: from the camera, a descending ray would
+ * be a small number times one that overflows. mean(x) is a series where 1 - e^-x cancels, so the
+ * horizon needs no special case.
  *
- * Scalars alone, in what C and GLSL have in common: tests/unit/test_fog.c compiles this text.
- * All is total: whatever comes in, a depth of 0..masu_fog_most comes out.
+ * Only scalars, in the common subset of C and GLSL: tests/unit/test_fog.c compiles this file. Any
+ * input gives a depth of 0..masu_fog_most.
  */
 #ifndef MASU_FOG_GLSL
 #define MASU_FOG_GLSL
 
 #include "shared/guard.glsl"
 
-const float masu_fog_most = 64.0; /* what e^-64 leaves, no format holds */
+const float masu_fog_most = 64.0; /* no format can hold e^-64 */
 const float masu_fog_far = 1e15;  /* metres; larger squares and products stay finite */
 
 /* (1 - e^-x) / x for x >= 0. */
@@ -28,15 +28,15 @@ float masu_fog_mean(float x)
     return x < 0.125 ? series : closed;
 }
 
-/* Of the point at that height, per metre; at most 1e15. */
+/* Density at that height, per metre; at most 1e15. */
 float masu_fog_density_at(float density, float falloff, float height)
 {
     float fallen = clamp(falloff * height, -85.0, 85.0);
     return min(density * masu_exp2(-1.44269504 * fallen), 1e15);
 }
 
-/* height: of the eye over the fog's; climb: y of the ray's unit direction; start: where fog begins;
- * far: where the ray ends, both in metres along it. */
+/* height: of the camera above the fog height; climb: y of the ray's unit direction; start: where
+ * fog begins; far: end of the ray, both in metres along it. */
 float masu_fog_depth(float density, float falloff, float height, float climb, float start, float far)
 {
     float begin = masu_sane(start, 0.0, masu_fog_far);
@@ -53,7 +53,8 @@ float masu_fog_depth(float density, float falloff, float height, float climb, fl
     return min(dense * (length * masu_fog_mean(thinning * abs(up) * length)), masu_fog_most);
 }
 
-/* The same of a ray without an end: the sky's. One that does not climb out of the fog is lost in it. */
+/* masu_fog_depth() for an endless ray to the sky. A ray that does not climb out of the fog is fully
+ * fogged. */
 float masu_fog_depth_sky(float density, float falloff, float height, float climb, float start)
 {
     float begin = masu_sane(start, 0.0, masu_fog_far);
@@ -69,7 +70,7 @@ float masu_fog_depth_sky(float density, float falloff, float height, float climb
     return min(dense / rate, masu_fog_most);
 }
 
-/* The part of the light behind it that is left, 0..1. */
+/* Transmittance, 0..1. */
 float masu_fog_left(float depth)
 {
     return min(masu_exp2(-1.44269504 * depth), 1.0);

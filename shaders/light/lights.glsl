@@ -1,22 +1,24 @@
 /*
- * lights.glsl: local lights: points and spots, which are spheres of their radius, capsules and rectangles:
- * what reaches a surface point of one of them, and which of them a pixel has to ask. With MASU_LOCAL_SHADOWS, as
- * far as nothing is in between (light/local_shadow.glsl). How a source of a size is mirrored: light/source.glsl.
+ * lights.glsl: local lights: points and spots (spheres of their radius), capsules and rectangles:
+ * the light that one emits to a surface point, and the list of lights of a pixel. With
+ * MASU_LOCAL_SHADOWS including their shadows (light/local_shadow.glsl). Specular light of area
+ * lights: light/source.glsl.
  *
- *   reaches = color * window * cone / max(d^2, radius^2)
- *   window  = 1 - (d / range)^4, 0 from the range on: an inverse square that ends, so that a light
- *             is culled beyond its range
- *   cone    = t^2, t = (cos(a) - cos(outer)) / (cos(inner) - cos(outer)) clamped to 0..1. Of the
- *             angle a to the axis its versine 1 - cos(a) = |l + axis|^2 / 2 is compared: cosines of
- *             narrow cones have no digits left. Window and cone are those of glTF's
- *             KHR_lights_punctual
- *   color   of points and spots is radiant intensity / pi, as the sun's is irradiance / pi: a white matt surface that
- *             faces the light at distance d has the radiance color / d^2. Of capsules and rectangles it is
- *             radiance; window and range are those of the centre
+ *   light  = color * window * cone / max(d^2, radius^2)
+ *   window = 1 - (d / range)^4, 0 from the range on: an inverse square that ends, so that a light
+ *            can be culled beyond its range
+ *   cone   = t^2, t = (cos(a) - cos(outer)) / (cos(inner) - cos(outer)) clamped to 0..1. Computed
+ *            from the versine of the angle a to the axis, 1 - cos(a) = |l + axis|^2 / 2: cosines of
+ *            narrow cones have no digits left. Window and cone are defined by
+ *            glTF's KHR_lights_punctual
+ *   color  is radiant intensity / pi for points and spots, like irradiance / pi for the sun: a
+ *            white diffuse surface that faces the light at distance d has the radiance
+ *            color / d^2. For capsules and rectangles it is radiance; window and range are
+ *            measured from the centre
  *
- * A tile's list (light_tiles.comp) leaves out only lights for which masu_light_reaches is false at
- * every surface of the tile, and lists rise: a sum over the list has the same bits as one over all.
- * Needs globals.glsl before it. Everything is finite for any bits.
+ * The list of a tile (light_tiles.comp) omits only lights for which masu_light_reaches is false at
+ * every surface of the tile, and lists rise: a sum over the list has the same bits as one over all
+ * lights. Needs globals.glsl before it. Every result is finite for any input bits.
  */
 #ifndef MASU_LIGHTS_GLSL
 #define MASU_LIGHTS_GLSL
@@ -34,12 +36,13 @@ layout(constant_id = 17) const bool masu_area_lights = false;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
 {
-    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list; float bits: z 1 / texels of the
-                               * atlas, w a step of the camera's subpixel grid at distance 1, m */
+    uvec4 masu_lights_header; /* x: lights in view, y: uints per tile list; as float bits: z: 1 /
+                               * atlas size in texels, w: a step of the camera's subpixel grid at
+                               * distance 1, m */
     masu_punctual_light_data masu_lights[];
 };
 
-/* Words: of each tile how many lights, or MASU_TILE_ALL, then their numbers. */
+/* Per tile: the number of lights, or MASU_TILE_ALL, then their indices. */
 #ifdef MASU_LIGHT_TILES_WRITTEN
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHT_TILES, std430) writeonly buffer LightTiles
 #else
@@ -54,7 +57,7 @@ uint masu_light_count()
     return min(masu_lights_header.x, uint(MASU_LOCAL_LIGHTS_MAX));
 }
 
-/* First word of the list of the tile that a pixel lies in. */
+/* Offset of the list of a tile. */
 uint masu_light_list(uvec2 tile, uvec2 size)
 {
     uint columns = (size.x + uint(MASU_TILE) - 1u) / uint(MASU_TILE);
@@ -62,8 +65,8 @@ uint masu_light_list(uvec2 tile, uvec2 size)
 }
 
 #ifndef MASU_LIGHT_TILES_WRITTEN
-/* Which lights a pixel of a tile asks: those of its list, or all of them: the same operations in the same order on the
- * lights that reach it. */
+/* The lights that a pixel of a tile evaluates: the list of the tile, or all lights. The operations
+ * on the lights that reach the pixel, and their order, are the same. */
 struct masu_asked {
     uint count;
     uint list;
@@ -78,14 +81,14 @@ masu_asked masu_lights_asked(uvec2 tile, uvec2 size, bool by_tiles)
     return masu_asked(all_lights ? masu_light_count() : min(listed, uint(MASU_TILE_LIGHTS_MAX)), list, all_lights);
 }
 
-/* The i-th of them. */
+/* Index of the i-th light. */
 uint masu_light_asked(masu_asked asked, uint i)
 {
     return asked.all_lights ? i : min(masu_light_tiles[asked.list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
 }
 #endif
 
-/* View depth of what the depth image says; all passes ask here, so that they agree. */
+/* View depth of a value of the depth buffer; all passes call this, so that they agree. */
 float masu_light_depth(float depth)
 {
     precise float z = frame.forward.w * masu_rcp(depth);
@@ -101,15 +104,15 @@ uint masu_light_kind(masu_punctual_light_data light)
     return uint(clamp(light.cone.w, 0.0, 7.0)) & 3u;
 }
 
-/* Whether its surface is in the scene too, where rays may meet it. */
+/* Whether the light's surface is also part of the scene, where rays may hit it. */
 bool masu_light_is_shared(masu_punctual_light_data light)
 {
     return (uint(clamp(light.cone.w, 0.0, 7.0)) & uint(MASU_LIGHT_SHARED)) != 0u;
 }
 
-/* l: unit vector towards the light's centre. strength: factor of the light's colour: of a point or spot irradiance /
- * pi on a surface that faces it, of others radiance. False: nothing arrives, and the other two are not to be used.
- * rel: the point, relative to the eye. */
+/* l: unit vector towards the centre of the light. strength: factor of the light's colour:
+ * irradiance / pi on a surface that faces a point or spot, radiance for other kinds. False: no
+ * light arrives; l and strength are not to be used. rel: the point, relative to the camera. */
 bool masu_light_arrives(masu_punctual_light_data light, vec3 rel, out vec3 l, out float strength)
 {
     vec3 to = light.position.xyz - rel;
@@ -118,7 +121,7 @@ bool masu_light_arrives(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     l = vec3(0.0, 1.0, 0.0);
     strength = 0.0;
     if (!(share < 1.0)) {
-        return false; /* NaN too */
+        return false; /* or NaN */
     }
     l = to * masu_rsqrt(squared);
     vec3 chord = l + light.axis.xyz;
@@ -131,7 +134,7 @@ bool masu_light_arrives(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite((abs(light.color.r) + abs(light.color.g) + abs(light.color.b)) * strength);
 }
 
-/* The same with the colour. */
+/* masu_light_arrives(), times the colour. */
 bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, out vec3 color)
 {
     float strength;
@@ -145,8 +148,9 @@ vec3 masu_unit(vec3 v)
     return v * masu_rsqrt_sure(max(dot(v, v), 1e-30));
 }
 
-/* Half axes of a rectangle, or of a capsule as one that faces a point; `to`: from the point to its centre.
- * The second turns such that the side that faces the point is the front. False: it shines the other way. */
+/* Half axes of a rectangle, or of the rectangle that stands for a capsule at a point; `to`: from
+ * the point to the centre. The sign of v makes the side that faces the point the front. False: a
+ * one-sided rectangle faces away. */
 bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out vec3 v)
 {
     u = light.axis.xyz;
@@ -161,7 +165,8 @@ bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out ve
     return !behind || light.color.w > 0.0;
 }
 
-/* The part of the sky that a source fills, as the squared sine of a sphere's radius. u, v: of masu_light_axes. */
+/* Angular size of a light, as the squared sine of a sphere's angular radius. u, v: from
+ * masu_light_axes(). */
 float masu_light_size(masu_punctual_light_data light, vec3 to, vec3 u, vec3 v)
 {
     float squared = max(dot(to, to), masu_tiny), area = light.color.w;
@@ -178,11 +183,12 @@ float masu_light_size(masu_punctual_light_data light, vec3 to, vec3 u, vec3 v)
 #ifdef MASU_SHADE_GLSL
 #include "light/source.glsl"
 
-/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
+/* The specular light of some area lights is split between rays that hit them and the analytic
+ * lobe. */
 layout(constant_id = 18) const bool masu_shared_lights = false;
 
-/* How far a point relative to the eye lies from the middle of a light that has a surface in the scene, squared:
- * below 1 within what the baker has fitted, and a little more for what is rounded. */
+/* Squared distance between a point, relative to the camera, and the core of a light that has a
+ * surface in the scene: below 1 within the baker's fit plus a rounding margin. */
 float masu_light_within(masu_punctual_light_data light, vec3 rel)
 {
     vec3 from = rel - light.position.xyz;
@@ -198,8 +204,8 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
     return dot(from, from) * masu_rcp(1.1 * radius2 + 1e-7);
 }
 
-/* How far a light reaches above the horizon of a plane through the point, and not yet how far the horizon cuts it: 0
- * or less, it lights nothing. to: its centre. */
+/* Height of a light above the horizon plane of the point, before horizon clipping: at 0 or less it
+ * lights nothing. to: the centre of the light. */
 float masu_light_height(masu_punctual_light_data light, vec3 to, vec3 n)
 {
     uint kind = masu_area_lights ? masu_light_kind(light) : MASU_KIND_POINT;
@@ -207,9 +213,10 @@ float masu_light_height(masu_punctual_light_data light, vec3 to, vec3 n)
     return kind == MASU_KIND_POINT ? height : height + abs(dot(n, light.axis.xyz));
 }
 
-/* A sum of lights: both kinds together, which takes less registers, but where MASU_LIGHTS_APART says otherwise. */
+/* A sum over lights: diffuse and specular together, which takes fewer registers, unless
+ * MASU_LIGHTS_APART is defined. */
 struct masu_light_sum {
-    vec3 light; /* or what comes from below the skin, */
+    vec3 light; /* or only the diffuse and transmitted light, */
 #ifdef MASU_LIGHTS_APART
     vec3 mirrored;
 #endif
@@ -224,11 +231,11 @@ void masu_sum_mirrored(inout masu_light_sum sum, vec3 mirrored)
 #endif
 }
 
-/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced:
- * share of the mirrored light of base and coat that is traced; z 1: rays meet all of what they can, 0: they share it
- * with the lobe. False: nothing arrives.
+/* Adds the light of one local light at a surface point relative to the camera. n: the normal of the
+ * surface itself; traced: share of the specular light of base and coat that is traced; z: 1 if rays
+ * find everything they can hit, 0 if they share it with the lobe. False: no light arrives.
  *
- * Shadows come first: they keep only one number, and what is in shadow needs nothing of the rest. */
+ * Shadows come first: they keep only one value alive, and a point in shadow skips the rest. */
 #ifdef MASU_SHELVED
 bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b, masu_shelved_bsdf shelf, uint number,
                           vec3 rel, vec3 n, vec3 traced)
@@ -257,8 +264,8 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     if (!(strength > 0.0)) {
         return false;
     }
-    /* Computed again, in another form so that the compiler does not merge them: kept alive, they would take six
-     * registers while the atlas is read. */
+    /* Recomputed, in another form so that the compiler does not merge them: kept alive, they would
+     * take six registers during the atlas reads. */
     to = -(rel - light.position.xyz);
     l = to * masu_rsqrt(dot(to, to));
 #endif
@@ -271,7 +278,7 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     vec2 kept = vec2(1.0);
     if (masu_shared_lights && masu_light_is_shared(light)) {
         if (masu_light_within(light, rel) < 1.0) {
-            return false; /* its own surface */
+            return false; /* the light's surface itself */
         }
 #ifdef MASU_SURFACE
         bool any_traced = traced.x + traced.y > 0.0;
@@ -300,7 +307,8 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
 #ifdef MASU_SURFACE
         directed = b.coat > 0.0 || s.shadow >= 0.0;
 #else
-        directed = b.f90 < 0.0; /* never; a constant would let the compiler keep more registers */
+        directed = b.f90 < 0.0; /* always false; a constant would let the compiler keep more
+                                 * registers */
 #endif
         if (!directed) {
             /* Multiple scattering and diffuse light, which do not depend on the direction. */
@@ -325,8 +333,8 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     return true;
 }
 
-/* Share of the emission that a ray has met, at a point `met`, in what a surface at `rel` mirrors: of what is no
- * local light's surface all of it. n, v, roughness: of the lobe that the ray is of. */
+/* Share of the emission at a ray's hit `met` that the surface at `rel` reflects: 1 unless the hit
+ * is on a local light's surface. n, v, roughness: the lobe of the ray. */
 float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
 {
     uint lights = masu_light_count();
@@ -345,7 +353,8 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
             if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
                 masu_light_axes(light, to, half_u, half_v);
             }
-            /* Where the window takes the lobe away, rays find the light; what it dims a little is lost, not noise. */
+            /* If the range window removes the analytic lobe, the rays take over; a slight dimming
+             * is lost, which is not noise. */
             float dimmed = far * far;
             dimmed *= dimmed * (3.0 - 2.0 * dimmed);
             share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to, half_u, half_v));

@@ -1,18 +1,20 @@
 /*
- * local_shadow.glsl: how much of a punctual light a point sees past what casts shadows, by the light's faces in
- * the atlas (shared/local_shadow.h). Whoever includes this binds the atlas, and says where: MASU_AT_LOCAL_SHADOWS.
- * Needs lights.glsl's buffer before it.
+ * local_shadow.glsl: visibility of a local light at a point, from the light's faces in the shadow
+ * atlas (shared/local_shadow.h): masu_light_seen(). The includer binds the atlas and defines its
+ * binding: MASU_AT_LOCAL_SHADOWS. Needs lights.glsl's buffer before it.
  *
- * A point light has six faces of a cube along the world's axes, a spot one along its own; a texel is lit or not,
- * and nine texels are weighted by a quadratic B-spline around the point. The edge of a shadow is where their sum is one
- * half. The sum is made up to three times as steep there if the penumbra of the source is narrower than the filter.
+ * A point light has six faces of a cube along the world's axes, a spot one along its own axis. A
+ * texel is lit or not, and nine texels are weighted by a quadratic B-spline around the point. The
+ * edge of a shadow is where their sum is one half. If the penumbra of the source is narrower than
+ * the filter, the sum is made up to three times as steep there.
  *
- * BIAS. The depth near / z of a plane is affine in the face. Each of the nine is compared with the surface's own
- * plane there where that rises towards the light, and with the point's depth where it falls: exact on a plane.
- * The atlas holds depths that are rounded away from the light; another tenth of a texel is for what normal and
- * depth of the point are rounded to, and what the plane gains in an eighth of a texel across for what vertices are.
- * The point comes from a depth image, whose rasteriser snaps vertices as well: it is lifted off its plane by a step of
- * the subpixel grid at its distance from the camera. This matters if texels are smaller than that step.
+ * BIAS. The depth near / z of a plane is affine in the face. Each of the nine texels is compared
+ * with the surface's own plane there if that rises towards the light, and with the point's depth if
+ * it falls: exact on a plane. The atlas holds depths that are rounded away from the light. A bias
+ * of a tenth of a texel covers the rounding of the point's normal and depth, and the plane's slope
+ * over an eighth of a texel the rounding of vertices. The point is from a depth image, whose
+ * rasteriser also snaps vertices: it is lifted off its plane by a step of the subpixel grid at its
+ * distance from the camera. This matters if texels are smaller than that step.
  */
 #ifndef MASU_LOCAL_SHADOW_GLSL
 #define MASU_LOCAL_SHADOW_GLSL
@@ -21,14 +23,17 @@
 
 layout(set = MASU_SET_PASS, binding = MASU_AT_LOCAL_SHADOWS) uniform sampler2D local_shadow_atlas;
 
-const float masu_local_steepest = 200.0; /* slope against the light that is still made up for: 0.3 degrees */
+const float masu_local_steepest = 200.0; /* steepest slope against the light that is compensated:
+                                          * 0.3 degrees */
 const float masu_local_least_bias = 0.1; /* texels */
-const float masu_local_behind = 20.0; /* a surface that faces away from all of the source is dark over 2.9 degrees */
-const float masu_local_snap = 1.0 / 8.0; /* texels: how far rasterisers may move an edge across a face */
-const float masu_local_steeper = 3.0; /* most: edges of a third of the filter's width */
-const float masu_local_width = 0.9; /* texels: half width of the penumbra that is as wide as the filter */
+const float masu_local_behind = 20.0; /* a surface that faces away from the whole source darkens
+                                       * over 2.9 degrees */
+const float masu_local_snap = 1.0 / 8.0; /* texels: how far rasterisers may move an edge on a
+                                          * face */
+const float masu_local_steeper = 3.0; /* at most: edges of a third of the filter's width */
+const float masu_local_width = 0.9; /* texels: half width of a penumbra as wide as the filter */
 
-/* Weights of the texels before, at and after the point; f: how far it is from its texel's centre. */
+/* Weights of the texels before, at and after the point; f: distance from its texel's centre. */
 vec3 masu_local_spline(float f)
 {
     float a = 0.5 - f;
@@ -36,14 +41,14 @@ vec3 masu_local_spline(float f)
     return vec3(0.5 * a * a, 0.75 - f * f, 0.5 * b * b);
 }
 
-/* Of a row of texels those that are lit. Depths are at most 1: a clamp to 0..1 costs no instruction. */
+/* Which texels of a row are lit. Depths are at most 1: a clamp to 0..1 costs no instruction. */
 vec3 masu_local_lit(vec3 across, float down, float depth, vec3 nearest)
 {
     return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), nearest - depth));
 }
 
 #ifdef MASU_LOCAL_SHADOWS_FOUR
-/* The four texels around the point, for shaders that have no registers for nine. */
+/* The four texels around the point, for shaders without registers for nine. */
 float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float gap)
 {
     vec2 corner = floor(at - 0.5);
@@ -57,8 +62,8 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
     return mix(mix(lit.w, lit.z, f.x), mix(lit.x, lit.y, f.x), f.y);
 }
 #else
-/* at: in texels of the atlas; depth: of the point; slope: what its surface gains of it per texel. gap: depth of the
- * nearest texel to the light, minus that of the point. */
+/* at: in texels of the atlas; depth: of the point; slope: change of the surface depth per texel.
+ * gap: depth of the texel closest to the light, minus the depth of the point. */
 float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float gap)
 {
     vec2 middle = floor(at);
@@ -69,8 +74,9 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
     vec3 weight = masu_local_spline(f.x), rows = masu_local_spline(f.y);
     float sum = 0.0;
     gap = 0.0;
-    /* In a loop: all sixteen texels of four gathers at once take too many registers. Gathered are the texels
-     * below left, below right, above right, above left of a corner. The second turn has the middle row again. */
+    /* In a loop: all sixteen texels of four gathers at once take too many registers. A gather
+     * returns the texels below left, below right, above right, above left of a corner. The second
+     * iteration reads the middle row again. */
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         vec4 left = textureGather(local_shadow_atlas, uv);
         vec4 right = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
@@ -88,7 +94,7 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
 }
 #endif
 
-/* rel: relative to the eye; n: unit, of the surface itself, on the lit side. */
+/* rel: relative to the camera; n: unit normal of the surface itself, on the lit side. */
 float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
 {
     vec3 p = rel - light.shadow_origin.xyz;

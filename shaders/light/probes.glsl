@@ -1,18 +1,19 @@
 /*
- * probes.glsl: light probes. What a probe has is SH-9 of irradiance / pi under the light of this
- * frame, which probes.comp sums up from what the baker has found (see the design notes); a point takes
- * the eight around it. tools/bake/light/probe_light.c does the same in C, and tests hold them together.
+ * probes.glsl: light probes. A probe holds SH-9 of irradiance / pi under the light of this frame,
+ * which probes.comp computes from the baked data (see the design notes); a point interpolates its
+ * eight neighbours (masu_probe_light). tools/bake/light/probe_light.c is the C copy; tests compare
+ * them.
  *
  * Weights of the eight, multiplied:
- *   trilinear, of the point moved off its surface by the grid's bias
- *   1 in front of the surface's plane, falling to 0 at the grid's bias behind it: such a probe receives light that
- *     cannot come here. A cosine would favour probes far from the surface over those close to it
- *   visibility: Chebyshev's bound by the mean and mean square of distances from the probe in that
+ *   trilinear, for the point moved off its surface by the grid's bias
+ *   1 in front of the surface's plane, falling to 0 at the grid's bias behind it: such a probe
+ *     receives light that cannot reach the point. A cosine would favour distant probes over close ones
+ *   visibility: Chebyshev's bound from the mean and mean square of distances from the probe in that
  *     direction (Donnelly and Lauritzen 2006; Majercik et al., JCGT 8-2, 2019)
- *   0 for probes that are inside of things
- * None is exactly 0, so that the sum can be divided by.
+ *   0 for probes inside solids
+ * None is exactly 0, so the sum is a valid divisor.
  *
- * With MASU_PROBES_LIVE what live probes have found alone, without what is baked.
+ * With MASU_PROBES_LIVE only the light found by live probes, without the baked light.
  */
 #ifndef MASU_LIGHT_PROBES_GLSL
 #define MASU_LIGHT_PROBES_GLSL
@@ -31,7 +32,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PROBES, std430) MASU_PROBES_AC
     uint probe_words[];
 };
 #ifndef MASU_PROBES_WRITE
-/* The same, four words at a time: CPU drivers take as long for four as for one. */
+/* The same buffer, 16 bytes at a time: CPU drivers take as long for four values as for one. */
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PROBES, std430) readonly buffer ProbeQuads
 {
     masu_probe_grid probe_grid_again;
@@ -49,18 +50,18 @@ uint masu_probe_map_words()
     return probe_grid.more.z > 0u ? side * side : 0u;
 }
 
-/* The first word of maps, and of what probes.comp writes. */
+/* Offset of the distance maps, and of the data that probes.comp writes. */
 uint masu_probe_maps() { return masu_probe_count() * masu_probe_sets() * MASU_PROBE_SET_WORDS; }
 uint masu_probe_lit()
 {
     return (masu_probe_maps() + masu_probe_count() * masu_probe_map_words() + 3u) & ~3u;
 }
 
-/* Where probes are live: the means of what their rays have found, and the sets that these are of. */
+/* Live probes: offset of their rays' means, and of the sets with those. */
 uint masu_probe_live() { return masu_probe_lit() + masu_probe_count() * MASU_PROBE_LIT_WORDS; }
 uint masu_probe_live_sets() { return masu_probe_live() + masu_probe_count() * MASU_PROBE_LIT_WORDS; }
 
-/* Where a probe is, from the first. */
+/* Position of a probe relative to the first. */
 vec3 masu_probe_place(uint probe)
 {
     uvec3 counts = max(probe_grid.counts.xyz, uvec3(1u));
@@ -68,7 +69,7 @@ vec3 masu_probe_place(uint probe)
     return vec3(at) * probe_grid.spacing.xyz;
 }
 
-/* Coefficient k of a lit word, by 511 / the first one. */
+/* Packs coefficient k, divided by the first one / 511. */
 uint masu_probe_pack_ratio(vec3 coefficient, vec3 by, uint k)
 {
     vec3 v = coefficient * by / (k < 4u ? MASU_PROBE_MOST_1 : MASU_PROBE_MOST_2);
@@ -81,8 +82,8 @@ vec3 masu_probe_integers(uint w)
     return vec3(ivec3(uvec3(w << 22, w << 12, w << 2)) >> 22);
 }
 
-/* Real spherical harmonics of a unit direction from the second on (Ramamoorthi and Hanrahan 2001), as
- * factors of the words' integers. Two vectors: an array that a loop indexes would be memory. */
+/* Real spherical harmonics of a unit direction without the first (Ramamoorthi and Hanrahan 2001),
+ * as factors of the packed integers. Two vectors: an array indexed by a loop would be memory. */
 struct masu_probe_factors {
     vec4 a, b;
 };
@@ -99,7 +100,8 @@ masu_probe_factors masu_probe_basis(vec3 d)
     return f;
 }
 
-/* Bilinear in the octahedral map of a probe, whose border repeats what lies across the edge. */
+/* Bilinear lookup in the octahedral map of a probe, whose border repeats the texels across the
+ * edge. */
 vec2 masu_probe_distances(uint map, uint texels, vec3 d)
 {
     uint side = texels + 2u;
@@ -127,7 +129,7 @@ float masu_probe_seen(uint map, uint texels, vec3 d, float distance)
 }
 
 #ifndef MASU_PROBES_WRITE
-/* Irradiance / pi of one probe by the normal. */
+/* Irradiance / pi of one probe for the normal. */
 vec3 masu_probe_irradiance(uint quad, masu_probe_factors f, out float valid)
 {
     uvec4 a = probe_quads[quad], b = probe_quads[quad + 1u], c = probe_quads[quad + 2u];
@@ -141,13 +143,14 @@ vec3 masu_probe_irradiance(uint quad, masu_probe_factors f, out float valid)
     return max(vec3(rg, ba.x) * (masu_probe_first + sum), vec3(0.0));
 }
 
-/* Irradiance / pi of a surface point with that normal; finite for any operands. w: how far the grid answers for it: 1 inside,
- * falling to 0 within a cell around it. `from`: of the point, from the first probe. */
+/* Irradiance / pi of a surface point with that normal; finite for any operands. w: weight of the
+ * grid: 1 inside, falling to 0 within a cell around it. `from`: the point relative to the first
+ * probe. */
 vec4 masu_probe_light(vec3 from, vec3 normal)
 {
     from = masu_sane(from, -1e15, 1e15);
     normal = masu_sane(normal, -1.0, 1.0);
-    /* Once, not in the loop: nothing tells a compiler that the grid stays as it is. */
+    /* Loaded once, not in the loop: compilers cannot assume that the grid is constant. */
     vec4 origin = probe_grid.origin;
     vec3 spacing = probe_grid.spacing.xyz;
     uvec4 counts = probe_grid.counts, more = probe_grid.more;

@@ -1,10 +1,11 @@
 /*
- * shade.glsl: the light that leaves a surface towards the eye; for light.comp, transparents.frag and silhouettes.comp.
+ * shade.glsl: the light that a surface sends to the camera (masu_shade); for light.comp,
+ * transparents.frag and silhouettes.comp.
  *
  *   radiance = sum of lights * f * N.L + ambient
  *   f:        brdf/bsdf.glsl
- *   ambient:  irradiance on what is below the surface's skin; on what is mirrored the sky in the mirror
- *             direction, as blurred as the surface is rough
+ *   ambient:  irradiance for the diffuse terms; for the specular ones the sky in the mirror
+ *             direction, blurred by the roughness
  */
 #ifndef MASU_SHADE_GLSL
 #define MASU_SHADE_GLSL
@@ -24,14 +25,14 @@
 #include "light/probes.glsl"
 #endif
 
-/* Light that leaves a surface: from below its skin, and mirrored by it. */
+/* Light that leaves a surface: diffuse and specular. */
 struct masu_lit {
     vec3 diffuse;
     vec3 specular;
-    vec3 mirror; /* the part of the light from everywhere that is mirrored: what does not get below */
+    vec3 mirror; /* specular albedo for ambient light; the rest reaches the diffuse layer */
 };
 
-/* Of a light towards l, unit, that causes the irradiance color * pi on a facing surface. */
+/* Adds a light towards l, unit, with the irradiance color * pi on a facing surface. */
 void masu_add_light(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 l, vec3 color)
 {
 #ifdef MASU_SURFACE
@@ -46,12 +47,12 @@ void masu_add_light(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 l, vec
     lit.diffuse += color * diffuse;
 }
 
-/* What comes from everywhere at a point relative to the eye: the open sky's, or as the probes around
- * have it. Where less comes than the open sky sends, less is mirrored too: there is no saying from which
- * side. */
+/* Ambient light at a point relative to the camera: of the open sky, or of the probes around. If the
+ * probes have less light than the open sky, reflections are dimmed by the same ratio: the direction
+ * of the missing light is unavailable. */
 struct masu_around {
     vec3 irradiance; /* / pi */
-    vec3 mirrored;   /* part of the open sky's light */
+    vec3 mirrored;   /* share of the open sky's light */
 };
 
 masu_around masu_ambient_at(vec3 rel, vec3 n)
@@ -67,25 +68,24 @@ masu_around masu_ambient_at(vec3 rel, vec3 n)
     return around;
 }
 
-/* The open sky as a surface and its coat mirror it; of what mirrors nothing, nothing.
- * kept: share of the light from everywhere that the base mirrors, and that its coat does: the rest is traced
- * (specular_composite.comp).
+/* The open sky reflected by a surface and its coat; 0 without specular reflection. kept: share of
+ * the ambient light that base and coat reflect here; the rest is traced (specular_composite.comp).
  *
- * To be asked for before masu_bsdf_make: a look into the sky takes as many registers as a bsdf. */
+ * To be evaluated before masu_bsdf_make: a sky lookup takes as many registers as a bsdf. */
 struct masu_mirrored {
     vec3 base;
     vec3 coat;
-    float even; /* share of the base's f0 that gathers the light from everywhere instead */
+    float even; /* share of the base's f0 that uses irradiance instead */
     float kept; /* of the base */
 };
 
 /* Mips of an environment map are prefiltered for a viewer above the surface. At grazing angles the
- * lobe of a rough surface is closer to the normal, and the part that Schlick's (1 - h.v)^5 weighs
- * is about half as rough and stays close to the mirror direction. One lookup serves both parts,
- * fitted to integrals over six maps: log RMS at N.V 0.15 to 0.4, roughness 0.75 and 1, of white
- * metal 24 and 12 % instead of 62 and 57, of black dielectric 33 and 36 instead of 68, 75.
- * direction: in the mirror direction, out the lookup's, of any length; roughness: out the lookup's.
- * Returns the share of the f0 term that gathers the irradiance instead. */
+ * lobe of a rough surface is closer to the normal, and the part weighted by Schlick's (1 - h.v)^5
+ * is about half as rough and close to the mirror direction. One lookup serves both parts, fitted to
+ * integrals over six maps: log RMS at N.V 0.15 to 0.4, roughness 0.75 and 1, of white metal 24 and
+ * 12 % instead of 62 and 57, of black dielectric 33 and 36 instead of 68, 75. direction: in the
+ * mirror direction, out the lookup's, of any length; roughness: out the lookup's. Returns the share
+ * of the f0 term that uses irradiance instead. */
 float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, inout float roughness)
 {
     float r = masu_sane(s.roughness, 0.0, 1.0);
@@ -103,8 +103,9 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
 }
 
 #ifdef MASU_SURFACE
-/* The open sky as a surface with a grain mirrors it: the mean over five normals, at equal steps of the distribution of
- * slopes along the grain (GGX: slope = alpha q / sqrt(1 - q^2)), each as rough as the surface is across the grain. */
+/* The open sky reflected by a surface with a grain: the mean over five normals, at equal steps of
+ * the distribution of slopes along the grain (GGX: slope = alpha q / sqrt(1 - q^2)), each with the
+ * roughness across the grain. */
 vec3 masu_fan(masu_surface s, vec3 n, vec3 v)
 {
     vec3 grain = masu_grain(s, n) * masu_grain_alpha(s), sum = vec3(0.0);
@@ -136,7 +137,7 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
         m.even = masu_bend_lookup(s, normal, v, mirrored, roughness);
     }
 #ifdef MASU_SURFACE
-    /* In a loop: the code for the sky would stand here twice. */
+    /* In a loop, so that the sky code is compiled only once. */
     float part = kept.x;
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         m.coat = vec3(0.0);
@@ -209,8 +210,9 @@ void masu_unshelve(masu_shelved_look p, inout masu_surface s)
 }
 #endif
 
-/* Ambient light at a point relative to the eye. Called before masu_bsdf_make, since the lookup of probes needs the most
- * registers. n: the normal of the base layer. With probes, s is rounded to half floats. */
+/* Ambient light at a point relative to the camera. Called before masu_bsdf_make, since the probe
+ * lookup needs the most registers. n: the normal of the base layer. With probes, s is rounded to
+ * half floats. */
 masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
 {
 #ifdef MASU_PROBES
@@ -224,7 +226,7 @@ masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
 }
 
 #ifdef MASU_SHELVED
-/* The colours of a bsdf and the numbers that go with them, which only the end of a light's evaluation needs. */
+/* The colours and related values of a bsdf that only the end of a light's evaluation needs. */
 struct masu_shelved_bsdf {
     uvec2 f0, rest, diffuse, matte;
 #ifdef MASU_SURFACE
@@ -269,8 +271,9 @@ void masu_unshelve(masu_shelved_bsdf p, inout masu_bsdf b)
 #endif
 #endif
 
-/* What comes from everywhere alone. b: of s; rel: the point, relative to the eye; seen: how much of it arrives; sky: of
- * masu_mirrored_sky. With lights the caller has asked what is around before it has made b. */
+/* Only the ambient light. b: of s; rel: the point, relative to the camera; seen: visibility of the
+ * ambient light; sky: from masu_mirrored_sky. With lights the caller has computed `around` before
+ * b. */
 #ifdef MASU_LIGHTS
 masu_lit masu_shade_around(masu_surface s, masu_bsdf b, masu_around around, float seen, masu_mirrored sky)
 {
@@ -297,7 +300,7 @@ masu_lit masu_shade_around(masu_surface s, masu_bsdf b, vec3 rel, float seen, ma
     return lit;
 }
 
-/* The same and the sun; seen: how much arrives of the sun and of the light from everywhere. */
+/* Ambient light plus the sun; seen: visibility of the sun and of the ambient light. */
 #ifdef MASU_LIGHTS
 masu_lit masu_shade(masu_surface s, masu_bsdf b, masu_around around, vec2 seen, masu_mirrored sky)
 {

@@ -1,11 +1,10 @@
 /*
- * sky.glsl: what is seen where there is no surface: a gradient of two colours, or the analytic sky of
- * src/frame/sky.c. masu_sky_light is the twin of masu_sky_radiance there.
+ * sky.glsl: the sky behind all surfaces: a gradient of two colours, or the analytic sky of
+ * src/frame/sky.c. masu_sky_light is the GPU copy of masu_sky_radiance there.
  *
- * Which of the two a renderer can show is a specialisation constant: without an analytic sky its code
- * is compiled away, and the uniforms are a stand-in. With it, a frame may still have a gradient.
- *
- * A sky from a picture stands in the place of the gradient.
+ * A specialisation constant enables the analytic sky: without it the code is compiled away, and the
+ * uniforms are a stand-in. With it, a frame may still use a gradient. An environment map replaces
+ * the gradient.
  *
  * After light/environment.glsl.
  */
@@ -23,7 +22,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKY, std140) uniform Sky
     masu_sky_uniforms masu_sky_tables;
 };
 
-/* Zenith to horizon over the sine of elevation, the horizon's colour below it. */
+/* Blend from horizon to zenith over the sine of elevation; the horizon's colour below it. */
 vec3 masu_sky_gradient(vec3 direction)
 {
     float height = clamp(direction.y, 0.0, 1.0);
@@ -35,8 +34,9 @@ bool masu_sky_is_analytic()
     return masu_has_sky && masu_sky_tables.azimuth.w > 0.0;
 }
 
-/* The sum of the three terms, weighted, at a sine of elevation and a cosine of azimuth from the sun: what comes
- * evenly, of the air, of the haze. One after the other: all at once are 72 registers on Intel's GPUs. */
+/* The weighted sum of the three terms at a sine of elevation and a cosine of azimuth from the sun:
+ * multiple scattering, air, haze. One after the other: all at once take 72 registers on Intel's
+ * GPUs. */
 vec3 masu_sky_sum(float y, float x, vec3 weights)
 {
     float t = y < 0.0 ? -masu_sqrt(-y) : masu_sqrt(y);
@@ -66,13 +66,13 @@ float masu_haze_phase(float cosine, float g)
     return (1.0 - g * g) * 0.0795774715 * r * r * r;
 }
 
-/* What the three terms count for at a cosine to the sun. */
+/* Phase functions of the three terms at a cosine to the sun. */
 vec3 masu_sky_phases(float cosine)
 {
     return vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
 }
 
-/* Cosine of the azimuth between a direction and the sun; straight up and down it has none. */
+/* Cosine of the azimuth between a direction and the sun; 0 straight up and down. */
 float masu_sky_azimuth(vec3 direction)
 {
     float flat2 = dot(direction.xz, direction.xz);
@@ -89,9 +89,9 @@ vec3 masu_sky_light(vec3 direction)
     return masu_sky_sum(d.y, masu_sky_azimuth(d), weights);
 }
 
-/* Of the horizon beneath or above a direction: three terms of a table, where the sky takes nine powers. The cosine to
- * the sun is that of the flat part as it is, which fades the phase functions towards the zenith and the ground, where a
- * direction has no azimuth. */
+/* Radiance of the horizon below or above a direction: three terms of a table, instead of nine
+ * powers. The cosine to the sun is computed from the unnormalised horizontal part, which fades the
+ * phase functions towards the zenith and the ground, where the azimuth is undefined. */
 vec3 masu_sky_horizon(vec3 direction)
 {
     vec3 d = masu_sane(direction, -1.0, 1.0);
@@ -109,9 +109,9 @@ vec3 masu_sky_horizon(vec3 direction)
     return sum;
 }
 
-/* The same, blurred as by lobes whose bands 1 and 2 are a1 and a2: both phase functions exactly so, for
- * their bands are powers; of the rest the elevation, by three looks, as far apart as is
- * best (the lobe has long tails: its variance would ask for more). */
+/* masu_sky_light(), blurred by lobes with the bands a1 and a2. Both phase functions are exact,
+ * since their bands are powers; the elevation is blurred by three samples at the best distance (the
+ * lobe has long tails: its variance would require more). */
 vec3 masu_sky_blurred(vec3 direction, float a1, float a2)
 {
     vec3 d = masu_sane(direction, -1.0, 1.0);
@@ -127,7 +127,7 @@ vec3 masu_sky_blurred(vec3 direction, float a1, float a2)
     return sum * (1.0 / 3.0);
 }
 
-/* The same for a roughness of 0.4, of the table that src/frame/sky_table.c fills: a look without powers. */
+/* masu_sky_blurred() for a roughness of 0.4, from the table of src/frame/sky_table.c: no powers. */
 vec3 masu_sky_rough(vec3 direction)
 {
     vec3 d = masu_sane(direction, -1.0, 1.0);
@@ -143,10 +143,10 @@ vec3 masu_sky_rough(vec3 direction)
     return mix(low, high, part.y);
 }
 
-/* The sun as it is drawn. In front of a gradient a disc of its true size would be two pixels wide
- * and bright enough to swamp the tone curve, so a soft glow shows where the light comes from. The
+/* The visible sun. In front of a gradient a disc of its true size would be two pixels wide and
+ * bright enough to swamp the tone curve, so a soft glow shows the direction of the light. The
  * analytic sky and an environment map, whose own sun the baker has removed, have the aureole: they
- * get the disc, of less than its true radiance. */
+ * get the disc, with less than its true radiance. */
 vec3 masu_sun_disc(vec3 direction)
 {
     float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
@@ -162,7 +162,7 @@ vec3 masu_sun_disc(vec3 direction)
     return frame.sun_color.rgb * (0.25 * masu_pow(towards, 350.0) + 0.05 * masu_pow(towards, 12.0));
 }
 
-/* Towards a unit direction, without the sun. */
+/* Radiance of the sky towards a unit direction, without the sun. */
 vec3 masu_sky(vec3 direction)
 {
     if (masu_sky_is_analytic()) {

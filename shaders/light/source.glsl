@@ -9,7 +9,7 @@
  *              22 % at 10 (tests/gpu/test_area_lights.c)
  *   rectangle  linearly transformed cosines (Heitz et al., "Real-Time Polygonal-Light Shading with
  *              Linearly Transformed Cosines", SIGGRAPH 2016). The horizon does not clip the polygon: its
- *              vector form factor is taken for that of a sphere (Hill, "Real-Time Area Lighting: a
+ *              vector form factor is treated like a sphere's (Hill, "Real-Time Area Lighting: a
  *              Journey from Research to Production", 2016). The table is normalised: the amplitude is the
  *              albedo of tables.glsl
  *   capsule    a rectangle that faces the point, longer by pi r / 4 at either end
@@ -23,9 +23,9 @@
 
 #include "brdf/bsdf.glsl"
 
-/* Mean cosine over a sphere whose centre has the cosine c: irradiance / (pi radiance s2). Between the two
- * cosines of tangency a fit; times s2 off by 0.016 at most, at s 0.98, and by 0.003 below 0.8, of a full
- * hemisphere (Snyder, "Area Light Sources for Real-Time Graphics", 1996). */
+/* Mean cosine over a sphere whose centre has the cosine c: irradiance / (pi radiance s2). Between
+ * the two cosines of tangency a fit; times s2 its error is 0.016 at most, at s 0.98, and 0.003
+ * below 0.8, of a full hemisphere (Snyder, "Area Light Sources for Real-Time Graphics", 1996). */
 float masu_clipped_cosine(float c, float s2)
 {
     float s = sqrt(s2);
@@ -43,8 +43,9 @@ float masu_widened(float alpha, float wider)
     return sqrt(min(alpha * alpha + wider, 1.0));
 }
 
-/* What the widened lobe lacks: it has the energy of a disc's irradiance, not of a solid angle, and loses
- * what it spreads below the horizon. wider: added to alpha^2. Fitted to integrals. */
+/* Energy correction of the widened lobe: it has the energy of a disc's irradiance, not of a solid
+ * angle, and loses the part that it spreads below the horizon. wider: added to alpha^2. Fitted to
+ * integrals. */
 float masu_source_gain(float alpha, float n_v, float s2, float wider)
 {
     float s = sqrt(s2), steep = (1.0 - n_v) * (1.0 - n_v);
@@ -54,9 +55,9 @@ float masu_source_gain(float alpha, float n_v, float s2, float wider)
     return (1.0 + solid * (1.0 - alpha)) / (1.0 - lost * (1.0 - alpha));
 }
 
-/* Weight of rays for a source's specular light: a smooth step of the chance that a ray of the lobe meets a
- * sphere of that size, because the widened lobe is nearly exact where that is small, and rays are noise. l: unit,
- * towards its centre. */
+/* Weight of rays for the specular light of a source: a smooth step of the probability that a ray of
+ * the lobe hits a sphere of that size. At low probability the widened lobe is nearly exact and rays
+ * are noisy. l: unit, towards its centre. */
 float masu_ray_share(vec3 n, vec3 v, vec3 l, float roughness, float s2)
 {
     float n_v = masu_sane(dot(n, v), 1e-4, 1.0);
@@ -70,7 +71,8 @@ float masu_ray_share(vec3 n, vec3 v, vec3 l, float roughness, float s2)
     return chance * chance * (3.0 - 2.0 * chance);
 }
 
-/* Of base and coat. Roughness as reflection rays have it (specular/guide.glsl). */
+/* masu_ray_share() of base and coat. Roughness as quantised for reflection rays
+ * (specular/guide.glsl). */
 vec2 masu_ray_shares(masu_surface s, masu_bsdf b, vec3 l, float s2)
 {
     vec2 share = vec2(masu_ray_share(b.n, b.v, l, floor(s.roughness * 63.0 + 0.5) / 63.0, s2), 0.0);
@@ -82,8 +84,8 @@ vec2 masu_ray_shares(masu_surface s, masu_bsdf b, vec3 l, float s2)
     return share;
 }
 
-/* A sphere in the direction l, unit: changes surface, direction and colour to those of a point. kept: of
- * the mirrored light of base and coat, what rays do not find. */
+/* Converts a sphere in the direction l, unit, to an equivalent point: changes surface, direction
+ * and colour. kept: share of the specular light of base and coat that rays do not find. */
 void masu_spread(inout masu_bsdf b, inout vec3 l, inout vec3 color, float s2, vec2 kept)
 {
     s2 = clamp(s2, 0.0, 0.9999);
@@ -108,20 +110,21 @@ void masu_spread(inout masu_bsdf b, inout vec3 l, inout vec3 color, float s2, ve
 
 /* ---- Rectangles ------------------------------------------------------------------------------ */
 
-/* Angle between two unit vectors over 2 pi, times their normal. acos(x) / sqrt(1 - x^2) / (2 pi) within
- * 6e-7 relative. */
+/* Angle between two unit vectors over 2 pi, times their normal. acos(x) / sqrt(1 - x^2) / (2 pi)
+ * within 6e-7 relative. */
 vec3 masu_edge(vec3 a, vec3 b)
 {
     float x = dot(a, b), y = abs(x);
     float v = (0.2499999 + y * (0.1441643 + 0.0041431 * y)) / (1.0 + y * (1.2132374 + 0.2893999 * y));
     vec3 normal = cross(a, b);
-    /* Of nearly opposite vectors 1 - x^2 has no digits left. */
+    /* For nearly opposite vectors 1 - x^2 has no digits left. */
     return normal * (x >= 0.0 ? v : 0.5 * masu_rsqrt_sure(max(dot(normal, normal), 1e-20)) - v);
 }
 
-/* Vector form factor of a parallelogram that faces the point: its centre relative to the point, its half axes.
- * One that is small in view is four points of Gauss's rule, off by 0.5 % in the mean and 3.5 % at most, edge on;
- * of another its edges, in a loop: an edge takes many registers. */
+/* Vector form factor of a parallelogram that faces the point: its centre relative to the point, its
+ * half axes. A small one is integrated by four Gauss points, with an error of 0.5 % in the mean and
+ * 3.5 % at most, edge on; a larger one over its edges, in a loop, since an edge takes many
+ * registers. */
 vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
 {
     float squared = dot(center, center);
@@ -145,17 +148,19 @@ vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
     return sum;
 }
 
-/* The part of a form factor above the horizon, and a mean cosine; height: its scalar product with the normal. */
+/* The part of a form factor above the horizon, and a mean cosine; height: its scalar product with
+ * the normal. */
 float masu_above(vec3 form, float height, out float cosine)
 {
     float size = min(masu_sqrt(dot(form, form)), 0.99999);
     cosine = masu_clipped_cosine(height * masu_rcp(size), size);
     float above = size * cosine;
-    cosine *= 1.0 - size * (1.0 / 3.0); /* of a hemisphere its mean, weighted by itself */
+    cosine *= 1.0 - size * (1.0 / 3.0); /* the mean over a hemisphere, weighted by itself */
     return above;
 }
 
-/* Between two nodes of the table of cosines' transforms, times 32767. Number by number: vectors take more registers. */
+/* Interpolates two nodes of the transform table, times 32767. Scalar: vectors take more
+ * registers. */
 vec4 masu_transform_at(uint node, float f)
 {
     uint at = uint(MASU_TABLE_TRANSFORM) + 2u * node;
@@ -182,7 +187,8 @@ vec4 masu_transform(float alpha, float n_v)
     return mix(low, high, y - float(row)) * (1.0 / 32767.0);
 }
 
-/* Axes of a surface's lobe besides its normal: `along` leads away from the viewer. At the pole the lobe is round. */
+/* Axes of a surface's lobe in addition to its normal: `along` leads away from the viewer. At the
+ * pole the lobe is round. */
 void masu_lobe_axes(masu_bsdf b, out vec3 along, out vec3 aside)
 {
     vec3 away = b.n * dot(b.n, b.v) - b.v;
@@ -192,22 +198,22 @@ void masu_lobe_axes(masu_bsdf b, out vec3 along, out vec3 aside)
     aside = cross(b.n, along);
 }
 
-/* From the lobe to a cosine around +z. m: of masu_transform. */
+/* Transforms from the lobe to a cosine around +z. m: from masu_transform. */
 vec3 masu_to_cosine(masu_bsdf b, vec4 m, vec3 along, vec3 aside, vec3 p)
 {
     float x = dot(along, p), z = dot(b.n, p);
     return vec3(m.x * x + m.y * z, dot(aside, p), b.alpha * (m.z * x + 2.0 * m.w * z));
 }
 
-/* Irradiance / (pi radiance) by a parallelogram that faces the point (x), the part of its specular lobe
- * that it fills (y), and the mean cosine of the former (z). */
+/* Irradiance / (pi radiance) by a parallelogram that faces the point (x), the share of its specular
+ * lobe that it covers (y), and the mean cosine of the former (z). */
 vec3 masu_rectangle(masu_bsdf b, vec3 center, vec3 u, vec3 v)
 {
     float lit = 0.0, mirrored = 0.0, cosine = 0.0, part = 1.0;
     if (!(dot(center, b.n) + abs(dot(u, b.n)) + abs(dot(v, b.n)) > 0.0)) {
         return vec3(0.0);
     }
-    /* In a loop: the code for a form factor would stand here twice. */
+    /* In a loop, so that the form factor is compiled only once. */
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         vec3 form = masu_form_factor(center, u, v);
         float mean, above = masu_above(form, i == 0 ? dot(form, b.n) : form.z, mean);
@@ -221,7 +227,7 @@ vec3 masu_rectangle(masu_bsdf b, vec3 center, vec3 u, vec3 v)
             center = masu_to_cosine(b, m, along, aside, center);
             u = masu_to_cosine(b, m, along, aside, u);
             v = masu_to_cosine(b, m, along, aside, v);
-            /* The horizon cuts off a part of the cosine's hemisphere: the rest stands for all. */
+            /* The horizon cuts off a part of the cosine's hemisphere: the rest is scaled up. */
             float c = b.alpha * m.z;
             part = 2.0 / (1.0 + m.x * masu_rsqrt(m.x * m.x + c * c));
         }
@@ -229,8 +235,8 @@ vec3 masu_rectangle(masu_bsdf b, vec3 center, vec3 u, vec3 v)
     return vec3(lit, mirrored, cosine);
 }
 
-/* What a parallelogram leaves to a light in one direction: surface, direction and colour are changed to it. It
- * has the rectangle's irradiance and no specular lobe but the coat's. s2: as of a sphere. */
+/* Converts a parallelogram to a directional light: changes surface, direction and colour. It has
+ * the rectangle's irradiance and only the coat's specular lobe. s2: as for a sphere. */
 void masu_flatten(inout masu_bsdf b, inout vec3 l, inout vec3 color, vec3 form, float s2, vec2 kept)
 {
     float cosine = clamp(form.z, 0.01, 1.0);

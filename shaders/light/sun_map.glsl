@@ -1,20 +1,20 @@
 /*
- * sun_map.glsl: how much of the sun a point sees past the polygons, by the shadow map. Whoever includes
- * this binds the map at binding 2 of its set, or says where else: MASU_AT_SUN_MAP.
+ * sun_map.glsl: visibility of the sun past the polygons, from the shadow map: masu_sun_seen(). The
+ * includer binds the map at binding 2 of its set, or defines another binding: MASU_AT_SUN_MAP.
  *
- * A point takes the first cascade that it is inside of, and a share of the next one near the
- * border; beyond the last one's depth the sun is seen. The comparison: nine texels, each lit or
- * not, with the weights of a quadratic B-spline around the point. They change smoothly while the
- * point moves across the texels, so that an edge is a ramp three texels wide without steps in it.
+ * A point uses the first cascade that contains it, blended with the next one near the border;
+ * beyond the depth of the last one it is lit. The comparison: nine texels, each lit or not, with
+ * the weights of a quadratic B-spline around the point. The weights change smoothly while the point
+ * moves across the texels, so an edge is a ramp three texels wide without steps.
  *
- * BIAS. Each of the nine is compared with the surface's own plane there where that rises towards
- * the sun, and with the point's depth where it falls: exact on a plane, under any sun. What normals
- * of curved meshes do not say about their flat triangles, and the foot of a steep wall seen from
- * the ground in front of it, is left to the casters' bias (cascade.vert). Wrong turns: to
- * raise the point by its slope times the reach of the filter (three times as many pixels on the
- * wrong side of an edge, for it lets in light under whatever is nearer than that); to move it along
- * its normal (shifts the shadow sideways); to choose the cascade first and look once (a cascade of
- * each lane's own is indexed memory: 1.5 times the time on lavapipe).
+ * BIAS. Each of the nine texels is compared with the surface's own plane there if that rises
+ * towards the sun, and with the point's depth if it falls: exact on a plane, for any sun. The
+ * casters' bias (cascade.vert) covers the difference between the normals of curved meshes and their
+ * flat triangles, and the foot of a steep wall towards the ground in front. Rejected: raising the
+ * point by its slope times the reach of the filter (three times as many pixels on the wrong side of
+ * an edge, since light leaks in under closer occluders); moving it along its normal (shifts the
+ * shadow sideways); choosing the cascade first and sampling once (a cascade per lane is indexed
+ * memory: 1.5 times the time on lavapipe).
  */
 #ifndef MASU_SUN_MAP_GLSL
 #define MASU_SUN_MAP_GLSL
@@ -35,11 +35,11 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
     masu_shadow_uniforms shadow;
 };
 
-const float masu_steepest = 200.0; /* slope against the sun that is still made up for: 0.3 degrees */
-const float masu_least_bias = 0.1; /* texels: what depth and normal are rounded to */
+const float masu_steepest = 200.0; /* steepest slope against the sun that is compensated: 0.3
+                                    * degrees */
+const float masu_least_bias = 0.1; /* texels: covers the rounding of depth and normal */
 
-/* Weights of the texels before, at and after the point; f: how far it is from its texel's
- * centre. */
+/* Weights of the texels before, at and after the point; f: distance from its texel's centre. */
 vec3 masu_spline(float f)
 {
     float a = 0.5 - f;
@@ -47,8 +47,8 @@ vec3 masu_spline(float f)
     return vec3(0.5 * a * a, 0.75 - f * f, 0.5 * b * b);
 }
 
-/* at: in texels of the cascade, 0 the edge of the first; corner: its first in the map; depth: of
- * the point; slope: what its surface gains of it per texel. */
+/* at: in texels of the cascade, 0 is the edge of the first; corner: its first texel in the map;
+ * depth: of the point; slope: change of the surface depth per texel. */
 float masu_map_lit(vec2 at, ivec2 corner, float depth, vec2 slope)
 {
     vec2 texel = floor(at);
@@ -69,7 +69,7 @@ float masu_map_lit(vec2 at, ivec2 corner, float depth, vec2 slope)
     return sum;
 }
 
-/* rel: relative to the eye; n: unit, on the side of the sun. */
+/* rel: relative to the camera; n: unit, on the side of the sun. */
 float masu_cascades_seen(vec3 rel, vec3 n)
 {
     uint count = min(uint(shadow.reach.x), uint(MASU_CASCADES_MAX));
@@ -103,7 +103,7 @@ float masu_cascades_seen(vec3 rel, vec3 n)
     return seen + left;
 }
 
-/* The same with the fading out of the last cascade; z: view depth. */
+/* masu_cascades_seen() with the fade-out of the last cascade; z: view depth. */
 float masu_sun_seen(vec3 rel, vec3 n, float z)
 {
     float fade = clamp((z - shadow.reach.y) * shadow.reach.z, 0.0, 1.0);

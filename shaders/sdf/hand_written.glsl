@@ -1,6 +1,6 @@
 /*
- * hand_written.glsl: what masu-sdfc generates besides the field, for a field that was written by hand:
- * one part, without bounds, and no half-spaces.
+ * hand_written.glsl: the declarations that masu-sdfc generates next to the field, for a
+ * hand-written field: one part, without bounds, and no half-spaces.
  */
 #define MASU_SDF_PART_COUNT 1
 #define MASU_SDF_LISTED_COUNT 1
@@ -63,7 +63,7 @@ void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)
 }
 
 #ifdef MASU_MOTION
-/* It may ask for time and parameters. */
+/* The field may depend on time and parameters. */
 #define MASU_SDF_MOVING 1
 #define MASU_SDF_MOVING_FLAT 0
 

@@ -1,31 +1,33 @@
 /*
- * occlusion.glsl: how much of the sun and of the ambient light the SDF leaves to a point.
+ * occlusion.glsl: shadow and ambient occlusion of the SDF at a point: sun_seen() and
+ * ambient_seen().
  *
- * SHADOW. One ray towards the middle of the sun, which is a disc of tangent w. At a sample of field f
- * at distance t, f / (w t) says how far the nearest surface lies off the ray in radii of the disc:
- * from 1 on none of the disc is covered, at -1 and below (the ray is that deep inside something) all
- * of it, and these two are proofs, not estimates. In between stands the least ratio of the ray, read
- * as the distance of a straight edge from the middle of the disc. Between two samples the closest
- * approach is that to the edge that fits both (Aaltonen, "GPU-based clay simulation and ray-tracing
- * tech in Claybook", GDC 2018). Wrong turn: to stop at the first hit. Half of a penumbra lies where
- * the middle of the sun is hidden; it was dark there, and every shadow grew by half a penumbra.
+ * SHADOW. One ray towards the centre of the sun, which is a disc of tangent w. At a sample of field
+ * f at distance t, f / (w t) is the distance of the nearest surface from the ray in radii of the
+ * disc: from 1 on the disc is fully visible, at -1 and below (the ray is that deep inside a solid)
+ * fully covered, and both are proofs, not estimates. In between the least ratio of the ray is taken
+ * as the distance of a straight edge from the centre of the disc. Between two samples the closest
+ * approach is estimated from the edge that fits both (Aaltonen, "GPU-based clay simulation and
+ * ray-tracing tech in Claybook", GDC 2018). Rejected: stopping at the first hit. In half of a
+ * penumbra the centre of the sun is occluded; it was dark there, and every shadow grew by half a
+ * penumbra.
  *
- * The depth inside a solid is wrong where two parts meet: each field is nearly 0 there, and light
- * leaked through the seam as a thin line. So a ray that is blocked without having been deep enough is
- * not believed alone: three more look at a third of the disc each, and the lesser result counts.
+ * The depth inside a solid is wrong at the seam of two parts: each field is nearly 0 there, and
+ * light leaked through as a thin line. So if a ray is blocked but never deep enough, three more
+ * rays test a third of the disc each, and the smaller visibility is used.
  *
- * No step is longer than the field allows, but for the least step of a twentieth of a pixel (a sixth
- * of that left 989 rays of the tunnel at 160x90 without an end after 128 steps, this leaves 7) and,
- * inside a solid, of a quarter of the disc.
+ * No step is longer than the field allows, with two exceptions: a least step of a twentieth of a
+ * pixel (a sixth of that left 989 rays of the tunnel at 160x90 without an end after 128 steps, this
+ * leaves 7) and, inside a solid, of a quarter of the disc.
  *
- * AMBIENT OCCLUSION. What is known in closed form about the field around a point is that over a plane
- * it is h cos(a) at distance h under the angle a to the normal; what it lacks of that is occluded.
- * Five samples: two on the normal, three at 45 degrees around it. Their weights are the least-squares
- * fit to the truth (cosine-weighted, a hit at distance t counts 1 - t / radius) over four scenes;
- * docs/design/06-ambient-occlusion.md has the errors, also of the usual five samples on the normal.
+ * AMBIENT OCCLUSION. Over a plane the field is h cos(a) at distance h under the angle a to the
+ * normal; the shortfall is occlusion. Five samples: two on the normal, three at 45 degrees around
+ * it. Their weights are a least-squares fit to the reference (cosine-weighted, a hit at distance t
+ * occludes 1 - t / radius) over four scenes; docs/design/06-ambient-occlusion.md has the errors,
+ * also for the usual five samples on the normal.
  *
- * The includer defines what of both there is, MASU_SHADOWS and MASU_AMBIENT_OCCLUSION, and their
- * constants. Positions are relative to the eye, as everywhere.
+ * The includer defines MASU_SHADOWS and MASU_AMBIENT_OCCLUSION, and their constants. Positions are
+ * relative to the camera, as everywhere.
  */
 #ifndef MASU_OCCLUSION_GLSL
 #define MASU_OCCLUSION_GLSL
@@ -35,16 +37,16 @@
 
 /* A surface point. */
 struct lit_point {
-    vec3 place;   /* relative to the eye */
+    vec3 place;   /* relative to the camera */
     vec3 normal;
-    float extent; /* largest coordinate involved: what fp32 rounds */
-    float offset; /* how far rays start off the surface */
+    float extent; /* largest coordinate involved: determines the fp32 rounding */
+    float offset; /* distance between the surface and the start of rays */
 };
 
-/* A tenth of a pixel: contact shadows move by as much. Sharper shadows than
- * at a quarter of a pixel (blobs, sun of 0.27 degrees: root mean square error 0.015, not 0.039) and no
- * acne, since a ray that leaves its surface does not count that surface as cover. Not below 32 ulp:
- * the field's rounding is up to 6, and the march stops at 8. */
+/* The offset is a tenth of a pixel; contact shadows move by as much. Sharper shadows than at a
+ * quarter of a pixel (blobs, sun of 0.27 degrees: root mean square error 0.015, not 0.039) and no
+ * acne, since a ray that leaves its surface does not treat that surface as an occluder. Not below
+ * 32 ulp: the rounding of the field is up to 6, and the march stops at 8. */
 lit_point lit_point_at(vec3 place, vec3 normal, float pixel)
 {
     lit_point p;
@@ -66,7 +68,7 @@ float field_at(vec3 place, out bool usable)
 
 #if MASU_SHADOWS
 
-/* Where a ray from `place` is inside the SDF's bounds: nothing outside is drawn, and nothing outside
+/* The interval of a ray from `place` inside the bounds of the SDF: outside nothing is drawn or
  * casts a shadow. */
 vec2 span_in_bounds(vec3 place, vec3 direction)
 {
@@ -80,27 +82,27 @@ vec2 span_in_bounds(vec3 place, vec3 direction)
                 min(min(leave.x, min(leave.y, leave.z)), MASU_SHADOW_DISTANCE));
 }
 
-/* Tangent of the sun's radius; a point would make every ratio infinite. */
+/* Tangent of the angular radius of the sun; 0 would make every ratio infinite. */
 const float sun_tangent = max(MASU_SUN_TANGENT, 1e-5);
 
-/* The part of a disc of radius 1 on one side of a straight line at distance s from its middle. */
+/* The fraction of a unit disc on one side of a straight line at distance s from its centre. */
 float disc_beyond(float s)
 {
     float c = masu_sane(s, -1.0, 1.0);
     return clamp(1.0 + (c * masu_sqrt(1.0 - c * c) - masu_acos(c)) * 0.31830989, 0.0, 1.0);
 }
 
-/* Least ratio of a ray to a disc of that tangent. */
+/* The least ratio of a ray to a disc of that tangent. */
 float least_ratio(lit_point p, vec3 towards, float tangent, inout uint evals)
 {
     vec3 start = p.place + p.normal * p.offset;
     vec2 span = span_in_bounds(start, towards);
     float t = span.x;
     float before_t = t;
-    float before_f = 0.0; /* of the sample before; 0: there is none */
+    float before_f = 0.0; /* of the previous sample; 0: none */
     bool fell = false;
     bool done = !(span.x < span.y);
-    /* The surface itself covers what of the disc is below its horizon. */
+    /* The surface itself covers the part of the disc below its horizon. */
     float least = min(dot(p.normal, towards) / tangent, 1.0);
     MASU_LOOP for (int i = 0; i < MASU_SHADOW_STEPS_MAX; i++) {
         if (done || uint(i) >= push.steps) {
@@ -109,8 +111,8 @@ float least_ratio(lit_point p, vec3 towards, float tangent, inout uint evals)
         bool usable;
         float f = field_at(start + towards * t, usable);
         evals++;
-        /* Close to the start the surface that the ray leaves is still the nearest; in a crease the
-         * offset may even have gone through the other side. */
+        /* Near the start the closest surface is still the one that the ray leaves; in a crease the
+         * offset may even pass through the other side. */
         bool close = t < 2.0 * p.offset;
         if (usable && t > 0.0 && !(close && f < p.offset)) {
             least = min(least, f / (tangent * t));
@@ -133,12 +135,13 @@ float least_ratio(lit_point p, vec3 towards, float tangent, inout uint evals)
         done = !usable || least <= -1.0 || !(t < span.y);
     }
     if (!done) {
-        masu_count(MASU_COUNTER_SHADOW_UNCONVERGED, 1u); /* the least ratio so far stands */
+        masu_count(MASU_COUNTER_SHADOW_UNCONVERGED, 1u); /* the least ratio so far is used */
     }
     return least;
 }
 
-/* One ray; three more, each for a third of the disc, where it is blocked without a proof. */
+/* The visible share of the sun: one ray; three more, each for a third of the disc, if it is blocked
+ * without proof. */
 float sun_seen(lit_point p, out uint evals)
 {
     vec3 sun = frame.sun_direction.xyz;
@@ -153,7 +156,7 @@ float sun_seen(lit_point p, out uint evals)
         if (i == 1 && !(whole > -1.0 && whole < 0.0)) {
             break;
         }
-        /* sqrt((k + 1/2) / 3) from the middle, 137.5 degrees apart */
+        /* sqrt((k + 1/2) / 3) from the centre, 137.5 degrees apart */
         vec2 around = i == 1 ? vec2(0.408248, 0.0)
                              : i == 2 ? vec2(-0.521393, 0.477641) : vec2(0.079800, -0.909299);
         around = i == 0 ? vec2(0.0) : around * sun_tangent;
@@ -171,14 +174,15 @@ float sun_seen(lit_point p, out uint evals)
 
 float ambient_seen(lit_point p, out uint evals)
 {
-    /* Frisvad's frame, without a branch that would show as a seam (Duff et al., JCGT 6-1, 2017). */
+    /* Orthonormal basis without a branch that would show as a seam (Duff et al., JCGT 6-1,
+     * 2017). */
     vec3 n = p.normal;
     float s = n.z < 0.0 ? -1.0 : 1.0;
     float a = -1.0 / (s + n.z);
     float b = n.x * n.y * a;
     vec3 u = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x);
     vec3 v = vec3(b, s + n.y * n.y * a, -n.y);
-    /* Nearer than this the field is mostly the march's error: some 0.01 pixels, and 8 ulp. */
+    /* Closer than this the field is mostly the error of the march: some 0.01 pixels, and 8 ulp. */
     float least = max(p.offset, 64.0 * ulp * p.extent);
     float lacks = 0.0;
     evals = 0u;
@@ -192,11 +196,12 @@ float ambient_seen(lit_point p, out uint evals)
         bool usable;
         float f = field_at(p.place + direction * h, usable);
         evals++;
-        /* Above 1 inside something: that deep a corner hides more than the samples' directions. */
+        /* Above 1 inside a solid: a corner that deep occludes more than the directions of the
+         * samples. */
         float lack = clamp(1.0 - f / (tilted ? 0.70710678 * h : h), 0.0, 3.0);
         lacks += usable ? weight * lack : 0.0;
     }
-    /* Where the radius shrinks to nothing in the picture there is nothing to see. */
+    /* Fades out when the radius shrinks below the resolution of the image. */
     float fade = clamp(MASU_AO_RADIUS / (2.0 * least) - 1.0, 0.0, 1.0);
     return 1.0 - MASU_AO_STRENGTH * fade * min(lacks, 1.0);
 }

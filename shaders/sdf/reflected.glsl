@@ -1,28 +1,34 @@
 /*
- * reflected.glsl: the SDF along a ray that leaves a surface: which parts it can meet, where it ends.
+ * reflected.glsl: SDF rays that leave a surface: the parts that they can hit, the march. Start at
+ * march_reflected().
  *
- * THE CONE. march_step knows rays whose width grows from nothing, as a pixel's does at the eye. One that leaves
- * a surface is a pixel wide there. So distances are measured from the apex that such a cone has behind the
- * surface: of a flat mirror that is the mirror image of the eye. world_at then counts from the apex, whose place
- * stands for the eye's. Wrong turn: a cone that grows with a share of the lobe, since nobody sees where a rough
- * surface's ray ends to 1/500 pixel. The last steps are Newton's, so it saved no evaluation (shares of 0, 0.05
- * and 1 of the width of half of the light, roughness 0.3: 12.7, 13.2, 16.7 of each ray of parts300), and a wider
- * cone touches more parts (times parts: 44, 51, 353).
+ * CONE. march_step expects a cone whose width is 0 at the camera. A reflected ray starts one pixel
+ * wide at the surface, so distances are measured from the apex that its cone has behind the
+ * surface: for a flat mirror the mirror image of the camera. world_at then counts from the apex,
+ * whose position replaces the camera's. Rejected: a cone that grows with a share of the lobe,
+ * although nobody sees to 1/500 pixel where the ray of a rough surface ends. The last steps are
+ * Newton's, so it saved no evaluation (shares of 0, 0.05 and 1 of the width of half the light,
+ * roughness 0.3: 12.7, 13.2, 16.7 per ray of parts300), and a wider cone touches more parts
+ * (evaluations times parts: 44, 51, 353).
  *
- * LEAVING. A ray begins a lift off its surface, 1/8 pixel and what fp32 cannot tell, where the march would stop at
- * 1/500. What is still nearer than twice that (a crease, a field much flatter than a distance) is walked
- * out of, a lift at a time, LEAVE_STEPS at most: half a pixel. Who is inside of something then has met it there.
+ * LEAVING. A ray starts at a lift above its surface, 1/8 pixel plus the fp32 resolution; the march
+ * would stop at 1/500. While the surface is within twice that tolerance (a crease, a field much
+ * flatter than a distance) the ray advances by one lift per step, at most LEAVE_STEPS: half a
+ * pixel. A ray that is still inside a solid then has hit it there.
  *
- * STEPS USED UP. The sample of least f/t stands for the surface as in trace.glsl, but only once the field has
- * begun to fall: before, the least is always at the start, and the surface would meet itself.
+ * STEP LIMIT. The sample of least f/t is taken as the surface as in trace.glsl, but only after the
+ * field has begun to fall: before, the least is always at the start, and the surface would hit
+ * itself.
  *
- * PARTS. Neighbours' rays part at a rough or curved surface, so a list for a block of them holds much that one
- * does not meet. Each ray makes its own: the parts whose bounding sphere its cone touches before its end, bits
- * where a scene has few, else numbers in shared memory. That costs as much as one sample of all parts. A list
- * that is full is one for the nearer half of the ray (what is in it is looked at again, what was left out stays
- * out), and the rest is a piece of its own; the last of PIECES pieces, and one with too much after HALVINGS, asks all
- * parts. Wrong turn: all parts at once where a list is full. Of 4096 balls in rows 0.4 % of the rays did, and made
- * 84 % of what all rays asked. Leaving a part out makes steps longer, never wrong.
+ * PARTS. Rays of neighbouring pixels diverge at a rough or curved surface, so a shared list of a
+ * block holds many parts that a single ray cannot hit. Each ray makes its own list: the parts whose
+ * bounding sphere its cone touches before its end, as bits if the scene has few, else as numbers in
+ * shared memory. That costs as much as one sample of all parts. A full list is filtered again for
+ * the closer half of the ray (parts outside it are dropped for good), and the rest of the ray
+ * becomes another piece. The last of PIECES pieces, and a piece that is still full after HALVINGS,
+ * evaluates all parts. Rejected: all parts at once if a list is full: 0.4 % of the rays over 4096
+ * balls in rows did, and made 84 % of all evaluations. Omitting a part makes steps longer, never
+ * wrong.
  *
  * Defined before: MASU_RELAXED, MASU_SDF_NO_FLAT; INVOCATIONS of a workgroup.
  */
@@ -42,14 +48,15 @@
 #define HALVINGS 6
 
 struct reflected {
-    ray along;   /* start and limit from the apex on */
-    float apex;  /* distance of the ray's origin from it */
+    ray along;   /* start and limit are from the apex */
+    float apex;  /* distance from the apex to the ray's origin */
     float lift;
-    float end;   /* of the nearest half-space, or -1 */
-    uint part;   /* which one */
+    float end;   /* hit of the nearest half-space, or -1 */
+    uint part;   /* number of the half-space */
 };
 
-/* From a point relative to the eye, already lifted, where the cone is `width` wide, growing by `spread`. */
+/* `from`: the lifted start relative to the camera, where the cone is `width` wide, growing by
+ * `spread`. */
 reflected reflected_ray(vec3 from, vec3 direction, float width, float spread, float lift, float longest)
 {
     reflected m;
@@ -67,26 +74,27 @@ reflected reflected_ray(vec3 from, vec3 direction, float width, float spread, fl
     masu_listed_box(low, high);
     float farthest = ends ? end : m.along.limit;
     clip_to_box(m.along, low, high);
-    /* As in march.comp: what ends at the very side of the box may be found a little behind it. */
+    /* As in march.comp: a hit on the very side of the box may be found slightly behind it. */
     m.along.limit = min(m.along.limit * (1.0 + newton_reach * m.along.pixel), farthest);
     return m;
 }
 
-/* Whether the ray, as wide as what its march takes for a hit, comes near a sphere. */
+/* Whether the ray, widened to the hit tolerance of its march, comes near a sphere. */
 bool can_meet(ray r, vec4 sphere)
 {
     vec3 c = sphere.xyz - eye_hi - eye_lo;
     float t = clamp(dot(c, r.direction), r.start, r.limit);
     vec3 off = c - r.direction * t;
     vec3 a = abs(eye_hi);
-    /* What is touched has its middle within t and its radius of the apex. */
+    /* The centre of a touched sphere is within t + radius of the apex. */
     float slack = 128.0 * ulp * (sphere.w + max(a.x, max(a.y, a.z)) + t);
     float reach = sphere.w + newton_reach * r.pixel * (t + sphere.w) + slack;
-    return !(sphere.w >= 0.0) || !(dot(off, off) > reach * reach); /* not: unbounded, or not a number */
+    return !(sphere.w >= 0.0) || !(dot(off, off) > reach * reach); /* negated: unbounded, or not a
+                                                                    * number */
 }
 
-/* From here on the field is that of the parts on a piece of the ray from its start on: of all of it, if their list
- * holds them, else of a half as often as it takes. False: there are none. */
+/* Selects the parts for a piece of the ray from its start on: the whole ray if its list holds the
+ * parts, else half as often as needed. False: no parts. */
 bool use_parts_on(inout ray r, bool last)
 {
 #if MASU_SDF_LISTED_COUNT == 0
@@ -111,7 +119,7 @@ bool use_parts_on(inout ray r, bool last)
     }
 #else
     masu_list_first = gl_LocalInvocationIndex * uint(MOST_LISTED);
-    masu_list_count = 0u; /* masu_part_at reads the list */
+    masu_list_count = 0u; /* masu_part_at() reads the list */
     bool fits = true;
     for (uint part = 0u; part < uint(MASU_SDF_LISTED_COUNT); part++) {
         if (!can_meet(r, masu_sdf_bounds(part))) {
@@ -146,7 +154,7 @@ bool use_parts_on(inout ray r, bool last)
 #endif
 }
 
-/* Distance from the apex of the first of the listed parts, or -1. */
+/* Distance from the apex to the first hit with the listed parts, or -1. */
 float march_listed(reflected m, ray r, inout uint evals)
 {
     march_state s = march_begin(r);
@@ -179,7 +187,7 @@ float march_listed(reflected m, ray r, inout uint evals)
     return s.done ? s.t : -1.0;
 }
 
-/* The same of all parts. */
+/* Distance from the apex to the first hit with any part, or -1. */
 float march_reflected(reflected m, inout uint evals)
 {
     ray r = m.along;

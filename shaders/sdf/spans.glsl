@@ -1,10 +1,11 @@
 /*
- * spans.glsl: what of the field matters to a block of 4x4 pixels, in pieces of its rays.
+ * spans.glsl: the parts and terms of the SDF that can affect a block of 4x4 pixels, per piece
+ * (span) of its rays.
  *
- * The pieces begin where the block's cone ends (cone.comp, which looks) and follow each other; each is three or four times
- * as long as the one before it, since what is hit is mostly near and what is passed by is left behind fast. The ball
- * around the middle of a piece holds that piece of all rays of the block. Behind the last one what matters to the
- * tile does.
+ * The pieces begin at the end of the block's cone (cone.comp selects the terms) and follow each
+ * other; each is three or four times as long as the one before, since most hits are close and most
+ * occluders are passed early. The ball around the centre of a piece contains that piece of all rays
+ * of the block. Behind the last piece the list of the tile is used.
  */
 #ifndef MASU_SPANS_GLSL
 #define MASU_SPANS_GLSL
@@ -15,26 +16,29 @@
 
 #if MASU_SDF_BLOCK_WORDS > 0
 
-/* Where the pieces end, the first of which begins at t. `pixel`: of the middle of the picture, where it is largest.
- * Tried: 8, 24, 72, 216 pixels' widths (a garden at grazing angles took 8 % more), a last one of 1000 or 2000, two or three
- * balls for each longer piece (1 to 4 % less for thin rods, 1 to 3 % more for a city). */
+/* The ends of the pieces, the first of which begins at t. `pixel`: pixel width at the centre of the
+ * image, where it is largest. Rejected: 8, 24, 72, 216 pixel widths (a garden at grazing angles
+ * took 8 % more), a last piece of 1000 or 2000, two or three balls for each longer piece (1 to 4 %
+ * less for thin rods, 1 to 3 % more for a city). */
 vec4 span_ends(float t, float pixel)
 {
     return t * (1.0 + pixel * vec4(8.0, 32.0, 128.0, 512.0));
 }
 
-/* For a sample in the middle of a piece. */
+/* The margin for a sample at the centre of a piece. */
 float span_margin(ray r, float begin, float end)
 {
     float across = 0.70711 * float(MASU_BLOCK_PIXELS) * r.pixel * end;
     vec3 p = abs(world_at(r.direction, end));
-    float slack = 128.0 * ulp * (max(p.x, max(p.y, p.z)) + end); /* the samples around a hit, for its normal */
+    float slack = 128.0 * ulp * (max(p.x, max(p.y, p.z)) + end); /* includes the samples around a
+                                                                  * hit, for its normal */
     return field_margin(r, 0.5 * (begin + end), 1.01 * length(vec2(0.5 * (end - begin), across)) + slack);
 }
 
-/* A block's words stand behind the lists: where its pieces begin, as a float, then the bits of each piece. */
-uint span_words;   /* where the first block's are */
-uint span_columns; /* blocks in a row */
+/* The data of the blocks follow the tile lists: the start of the first piece as a float, then the
+ * bits of each piece. */
+uint span_words;   /* offset of the first block */
+uint span_columns; /* blocks per row */
 
 void span_locate(uvec2 size)
 {
@@ -60,21 +64,23 @@ uint span_word(uvec2 at)
 
 /* ---- Following a pixel's ray ------------------------------------------------------------------- */
 
-/* MASU_SPAN_TILE: the number of its tile. MASU_SPAN_BEFORE: whether it may begin before the pieces do. */
+/* MASU_SPAN_TILE: index of the tile. MASU_SPAN_BEFORE: whether the ray may begin before the
+ * pieces. */
 
 #ifdef MASU_SPAN_TILE
 #if MASU_SDF_BLOCK_WORDS > 0
 #define MASU_WENT_BACK(t) span_to = (t) >= span_from ? span_to : -1.0;
-uint span_first; /* of its block's pieces */
+uint span_first; /* offset of the bits of the block */
 float span_pixel;
-float span_start, span_from, span_to; /* of the block; of the piece that the ray is in: -1 if it has gone back before that */
+float span_start, span_from, span_to; /* of the block; of the current piece: span_to is -1 if the
+                                       * ray went back before it */
 
 float span_end(vec4 ends, uint i)
 {
     return i == 0u ? ends.x : i == 1u ? ends.y : i == 2u ? ends.z : ends.w;
 }
 
-/* Before the pieces and behind them what the tile sees; of a scene of one part, that and all terms. */
+/* Outside the pieces the list of the tile is used; with all terms in a scene of one part. */
 void span_look_up(float t, uvec2 size)
 {
     vec4 ends = span_ends(span_start, span_pixel);
@@ -100,7 +106,7 @@ void span_begin(uvec2 at, uvec2 size, float t)
 {
     span_first = span_word(at) + 1u;
     span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
-    /* Nearly all begin where the pieces do. */
+    /* Nearly all rays begin at the first piece. */
     span_from = 0.0;
     span_to = span_start * (1.0 + span_pixel * 8.0);
     if (MASU_SPAN_BEFORE || !(t <= span_to)) {
@@ -112,14 +118,14 @@ void span_begin(uvec2 at, uvec2 size, float t)
     }
 }
 
-/* Once, before the first. */
+/* Called once, before the first ray. */
 void span_prepare(uvec2 size)
 {
     span_locate(size);
     span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
 }
 
-/* Samples come one behind the other, or MASU_WENT_BACK has said where they do not: one comparison each. */
+/* Samples advance, or MASU_WENT_BACK has reported a step back: one comparison each. */
 void span_follow(float t, uvec2 size)
 {
     if (!(t <= span_to)) {

@@ -1,17 +1,19 @@
 /*
- * terms.glsl: what of the field is evaluated, and what of it matters in a ball.
+ * terms.glsl: selects the terms of the SDF: which are evaluated, and which can affect the field in
+ * a ball.
  *
- * Bits (MASU_SDF_BLOCK_WORDS words) say which parts are asked for and which terms of them: operands of unions,
- * cuts and blends. Whoever evaluates the field with masu_margin set to twice the radius of a ball around the point
- * finds in masu_kept the bits of what can decide anywhere in the ball: with these alone the field has the same
- * value there, to the bit. In a ball of radius r two fields of constant L keep their difference within 2 r L of that
- * at the middle, so min(a, b) is a where b is more than that above it, a blend of radius k where it is k more (Barbier et
- * al., "Lipschitz Pruning: Hierarchical Simplification of Primitive-Based SDFs", Computer Graphics Forum 44-2,
- * 2025). Both fields are asked for anyway: what matters costs three operations a term.
+ * Bits (MASU_SDF_BLOCK_WORDS uints) select the parts to evaluate and their terms: operands of
+ * unions, cuts and blends. An evaluation with masu_margin set to twice the radius of a ball around
+ * the point leaves in masu_kept the bits of all terms that can decide anywhere in the ball: with
+ * only these the field has the bit-identical value there. In a ball of radius r the difference of
+ * two fields of Lipschitz constant L changes by at most 2 r L from the centre, so min(a, b) is a
+ * where b is more than that above it, or k more for a blend of radius k (Barbier et al., "Lipschitz
+ * Pruning: Hierarchical Simplification of Primitive-Based SDFs", Computer Graphics Forum 44-2,
+ * 2025). Both fields are evaluated anyway: the selection costs three operations per term.
  *
- * Of a scene of many parts the bits are of the places in its tile's list. Includers that do not choose terms
- * (neither MASU_SDF_KEEP nor MASU_SDF_ASK is defined) get a field without bits for them; those with MASU_SDF_ASK alone ask by
- * bits that others have kept.
+ * In a scene of many parts the bits index the list of its tile. Includers that do not select terms
+ * (neither MASU_SDF_KEEP nor MASU_SDF_ASK is defined) get a field without term bits; those with
+ * only MASU_SDF_ASK evaluate by bits that another pass has stored.
  */
 #ifndef MASU_TERMS_GLSL
 #define MASU_TERMS_GLSL
@@ -20,10 +22,10 @@
 uint masu_kept[2] = uint[](0u, 0u);
 uint masu_kept_terms = 0u;
 float masu_margin = 0.0;
-#ifndef MASU_CHOOSING /* false: for comparison, all that the tile sees is asked for always */
+#ifndef MASU_CHOOSING /* false, for comparison: always evaluates everything the tile contains */
 #define MASU_CHOOSING true
 #endif
-bool masu_keeping = false; /* else nothing is kept, and masu_margin is 0 */
+bool masu_keeping = false; /* else no bits are collected, and masu_margin is 0 */
 
 #define MASU_SDF_MARGIN masu_margin
 #define masu_term_bits(word) masu_part_bits(word)
@@ -38,7 +40,8 @@ void masu_keep_part(float d, float f, uint word, uint bit)
 
 vec4 masu_sdf_bounds(uint part);
 
-/* Of a part whose field is no bound of anything but, outside of it, of the distance to its sphere, times its growth. */
+/* For a part whose field bounds nothing except, outside its sphere, the distance to the sphere
+ * times its growth. */
 void masu_keep_estimate(float d, uint part, float safe, vec3 p)
 {
     vec4 sphere = masu_sdf_bounds(part);
@@ -48,7 +51,8 @@ void masu_keep_estimate(float d, uint part, float safe, vec3 p)
     masu_kept[1] |= (part >> 5) == 1u ? own : 0u;
 }
 
-/* Of a join: e, its operand with that bit, against what is joined of those before. */
+/* For a union or cut: `e`, the operand of `bit`, against the joined field of the operands
+ * `before`. */
 uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, uint before)
 {
     kept = joined > e + slack ? kept & ~before : kept;
@@ -88,7 +92,7 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEPT
 #endif
 
-/* For fields that are written by hand: one part, whose bit is 0, and terms 1..31. */
+/* For hand-written fields: one part, whose bit is 0, and terms 1..31. */
 #ifdef MASU_SDF_KEEP
 uint masu_terms_kept = 0u;
 
@@ -120,19 +124,19 @@ void masu_term_joined(int term, uint before, float joined, float e, float blend)
 }
 #endif
 
-/* Whether what is nowhere below `low` can matter beside d. */
+/* Whether a field that is at least `low` everywhere can affect the result next to d. */
 bool masu_may_be_below(float low, float d)
 {
     return low < d + MASU_SDF_MARGIN;
 }
 
-/* Whether a term is asked for. */
+/* Whether a term is selected. */
 bool masu_term(int term)
 {
     return (masu_term_bits(0) & 1u << term) != 0u;
 }
 
-/* The bits of `count` terms from that one on. */
+/* The bits of `count` terms, starting with `term`. */
 uint masu_terms_from(int term, int count)
 {
     return ((1u << count) - 1u) << term;

@@ -1,15 +1,17 @@
 /*
- * trace.glsl: one ray of a pixel: the march, the normal, the texels of what is hit, and the pixel's ray itself.
+ * trace.glsl: the primary ray of a pixel: ray setup, sphere tracing (march), normal and surface of
+ * the hit.
  *
- * Two marches. The plain one (Hart 1996) is the baseline of the report: it stops at 0.1 pixel cones and
- * refines twice by the secant. Ours (MASU_RELAXED) takes longer steps that it checks, and finds the
- * surface to 0.002 pixel: with 0.1, rims are thicker by that much, which put up to 0.5 % of the pixels
- * of thin rods on the wrong side and up to 3 % of the depths off by more than 1 %. Neither goes below
- * what fp32 can resolve, or the march never converges.
+ * There are two marches. The plain one (Hart 1996) is the baseline of the report: it stops at 0.1
+ * pixel cones and refines twice with the secant method. The relaxed one (MASU_RELAXED) takes longer
+ * steps that it checks, and finds the surface to 0.002 pixel. With 0.1 rims are thicker by that
+ * amount, which put up to 0.5 % of the pixels of thin rods on the wrong side and gave up to 3 % of
+ * the depths an error above 1 %. Neither tolerance goes below the fp32 resolution, or the march
+ * never converges.
  *
- * Steps used up: the sample of least f/t stands for the surface if it came within 2 pixels (Keinert et
- * al., "Enhanced Sphere Tracing", STAG 2014, section 3.3), else the ray misses. Never "hit" by
- * default: that draws holes into the sky.
+ * If the steps run out, the sample of least f/t is taken as the surface if it came within 2 pixels
+ * (Keinert et al., "Enhanced Sphere Tracing", STAG 2014, section 3.3); else the ray misses. A hit
+ * by default would draw holes into the sky.
  */
 #ifndef MASU_TRACE_GLSL
 #define MASU_TRACE_GLSL
@@ -18,7 +20,7 @@
 #include "shared/sdf_limits.h"
 #include "sdf/field.glsl"
 
-/* What an includer does where the next sample, at t, may not be behind this one. */
+/* Hook for the including file: called when the next sample, at t, may be before this one. */
 #ifndef MASU_WENT_BACK
 #define MASU_WENT_BACK(t)
 #endif
@@ -27,8 +29,8 @@
 #define MASU_MARCH_STEPS push.steps
 #endif
 
-/* The ray through a place in the picture, pixels, up to a raster depth (0: none) and inside the SDF's bounds. z_scale: distance
- * along the ray per unit of view z; at least 1. */
+/* The ray through an image position in pixels. It ends at the raster depth (0: none) and at the
+ * bounds of the SDF. z_scale: distance along the ray per unit of view z; at least 1. */
 ray place_ray(vec2 place, uvec2 size, float raster, out float z_scale)
 {
     float near = frame.forward.w;
@@ -37,7 +39,7 @@ ray place_ray(vec2 place, uvec2 size, float raster, out float z_scale)
     float inverse = 1.0 / z_scale;
     ray r = ray(through * inverse, 2.0 * frame.up.w / float(size.y) * inverse, near * z_scale, frame.sdf_max.w);
     if (raster > 0.0) {
-        r.limit = min(r.limit, near / raster * z_scale); /* a tie goes to the raster */
+        r.limit = min(r.limit, near / raster * z_scale); /* equal depth: the raster surface wins */
     }
     clip_to_box(r, frame.sdf_min.xyz, frame.sdf_max.xyz);
     return r;
@@ -52,7 +54,7 @@ ray pixel_ray(uvec2 at, uvec2 size, float raster, out float z_scale)
 float depth_of(float t, float z_scale)
 {
     float nearest = frame.forward.w * z_scale;
-    return t > nearest ? min(nearest / t, 1.0) : 1.0; /* a GPU's quotient of a number and itself may be above 1 */
+    return t > nearest ? min(nearest / t, 1.0) : 1.0; /* x / x may exceed 1 on a GPU */
 }
 
 #ifdef MASU_SAFE_HINT
@@ -60,7 +62,8 @@ float masu_hint_delta = 0.0;
 float masu_hint_free = 0.0;
 bool masu_hint_open = true;
 
-/* Chains the interval that a sample keeps free on the neighbours' rays; see march_checkerboard.comp. */
+/* Extends the interval that is known to be empty on the neighbours' rays; see
+ * march_checkerboard.comp. */
 void masu_note_hint(float t, float f)
 {
     float half_chord = 0.5 * t * masu_hint_delta * masu_hint_delta;
@@ -78,7 +81,7 @@ void masu_note_hint(float t, float f)
 
 #ifndef MASU_RELAXED
 
-/* How a march ended. */
+/* The result of a march. */
 struct march_end {
     float t, f;               /* last sample */
     float before_t, before_f; /* the sample before it */
@@ -101,7 +104,7 @@ float tolerance(ray r, float t)
     return max(0.1 * r.pixel * t, resolution(r, t));
 }
 
-/* Each step as long as the field allows. */
+/* Plain sphere tracing: each step is as long as the field allows. */
 march_end walk(ray r)
 {
     march_end m = march_end(r.start, 0.0, r.start, 0.0, -1.0, false, false, 0u);
@@ -128,9 +131,10 @@ march_end walk(ray r)
     return m;
 }
 
-/* Up to two secant steps, at most 16 tolerances ahead and never less than a plain step. A step that leads
- * further from the surface (past a thin part, out of a crease) is not taken. Not before the start: a
- * camera inside a solid sees it at the near plane, as a clipped polygon's inside would. */
+/* Up to two secant steps, at most 16 tolerances ahead and never less than a plain step. A step that
+ * ends further from the surface (past a thin part, out of a crease) is rejected. Never before the
+ * start: a camera inside a solid sees the solid at the near plane, like the inside of a clipped
+ * polygon. */
 void refine(ray r, inout march_end m)
 {
     MASU_LOOP for (int i = 0; i < 2; i++) {
@@ -170,12 +174,13 @@ float march(ray r, out uint evals)
 #else
 
 const float normal_step = 0.02;
-const float newton_from = 0.3; /* pixels: nearer than this, and then at most so far ahead */
-const float newton_reach = 2.0;
-const float newton_lands = 0.15; /* its end is believed without a check, of a step of at most: */
-const float newton_sure = 1.2;
+const float newton_from = 0.3; /* pixels: use Newton's method below this distance */
+const float newton_reach = 2.0; /* pixels: longest Newton step */
+const float newton_lands = 0.15; /* pixels: a Newton step that ends this close is accepted
+                                  * unchecked, */
+const float newton_sure = 1.2; /* if it was at most this long, pixels */
 
-/* No sample's coordinate exceeds the eye's by more than t: a bound of resolution() of few operations. */
+/* No coordinate of a sample exceeds the camera's by more than t: a cheap bound of resolution(). */
 float coarse = 8.0 * ulp * max(abs(eye_hi.x), max(abs(eye_hi.y), abs(eye_hi.z)));
 
 float tolerance(ray r, float t)
@@ -183,13 +188,15 @@ float tolerance(ray r, float t)
     return max(0.002 * r.pixel * t, coarse + 8.0 * ulp * t);
 }
 
-/* A march between two samples. It asks for the field at t, and is done when t is the hit, or -1. */
+/* The state of a march between two samples. The caller evaluates the field at t until done; then t
+ * is the hit, or -1. */
 struct march_state {
     float t;
-    float before_t, before_f; /* the last sample that was right: the ray is free up to their sum */
-    float limit;              /* of the ray, or narrower: a sample below 0 */
-    float best_t, best_f;     /* sample of least f/t, or where that is 2 pixels */
-    float apart;              /* what is further off, at distance 1, is far: two pixels' widths; 1e30 once it is narrowed */
+    float before_t, before_f; /* the last accepted sample: the ray is free up to their sum */
+    float limit;              /* end of the ray, or of the bracket: a sample below 0 */
+    float best_t, best_f;     /* sample of least f/t; at first 2 pixels */
+    float apart;              /* threshold of march_far at distance 1: two pixel widths; 1e30 once
+                               * bracketed */
     uint steps;
     bool narrowed, done;
 };
@@ -201,8 +208,8 @@ march_state march_begin(ray r)
                        2.0 * r.pixel + 8.0 * ulp, 0u, false, !any);
 }
 
-/* The sample that would stand for the surface is looked for in the second half of a ray's steps alone: hardly any ray comes
- * there, and looking takes six operations a sample. */
+/* The fallback sample is tracked only in the second half of the step budget: hardly any ray needs
+ * that many steps, and tracking costs six operations per sample. */
 bool note_best(march_state m)
 {
     return 2u * m.steps > MASU_MARCH_STEPS;
@@ -214,38 +221,42 @@ bool is_sure(float f, float pixel, float reach, float before_f)
            reach <= newton_sure * pixel;
 }
 
-/* The field at m.t is f. Two ways: most samples are further off than two pixels' widths, and there a step is a
- * check, a slope and one division, some 25 operations. Nearer it is 90, all in one piece: neighbours take different
- * branches of it nearly always. No more than one division between a sample and the next point. Wrong turn: the one
- * piece for all samples. A CPU driver runs both ways whatever happens, and was 8 to 20 % faster with it; a
- * GPU's lanes are far off together, and near together.
+/* Advances the march: the field at m.t is f. Most samples are further than two pixel widths from
+ * the surface; there (march_far) a step is a check, a slope and one division, some 25 operations.
+ * Closer samples need 90, without branches: neighbours nearly always take different ones. There is
+ * at most one division between a sample and the next point. Rejected: the branchless code for all
+ * samples. A CPU driver executes both sides anyway and was 8 to 20 % faster with it, but the lanes
+ * of a GPU are mostly far from the surface together, or close together.
  *
- * Steps go beyond the field's own distance, checked: a step s from a sample f1 to a sample f2 is right
- * when the two free spheres meet, s <= f1 + f2; else it is taken back and a plain step made. How
- * long to try: on a plane the field falls by a constant slope along the ray, and s = 2 f / (1 -
- * slope) makes the spheres just touch: up to twice the plain step, most where plain steps creep, at
- * grazing angles. The slope is that of the last two samples (Ban and Valasek, "Automatic Step Size
- * Relaxation in Sphere Tracing", Eurographics 2023; the check is Keinert et al. 2014). Wrong turn:
- * smoothing it over earlier ones; not one evaluation less in any scene.
+ * Over-relaxation: steps exceed the distance of the field, and are checked. A step s from a sample
+ * f1 to a sample f2 is valid if the two free spheres touch, s <= f1 + f2; else it is undone and a
+ * plain step is made. On a plane the field falls with a constant slope along the ray, and s = 2 f /
+ * (1 - slope) makes the spheres just touch: up to twice the plain step, most at grazing angles,
+ * where plain steps are slowest. The slope is estimated from the last two samples (Ban and Valasek,
+ * "Automatic Step Size Relaxation in Sphere Tracing", Eurographics 2023; the check is from Keinert
+ * et al. 2014). Rejected: smoothing the slope over earlier samples; it saved no evaluation in any
+ * scene.
  *
- * In the last third of a pixel the step is Newton's, to where the slope says that the field is 0:
- * half of all evaluations were spent there, since at a grazing angle each checked step takes only a
- * fixed share of what is left. It may end in a surface before the spheres meet, but then it was at
- * most two pixels' widths long: with four, rims at deep zooms were off by twice as much, for the same
- * number of evaluations. Where a step of Newton's, 1.2 pixels long at most, ends within 0.15 of a pixel it is believed
- * as well, and goes on from there: 8 to 12 % of all evaluations were repeated because it was not. But of a fractal
- * (MASU_SDF_ROUGH) what is that near may be anything: three times as many depths were off for it, and the spheres
- * have to meet. Wrong turn: steps of two pixels, or relaxed ones, believed like that. Of thin rods half as many pixels again
- * were on the wrong side. Wrong turn: letting any step end so. A relaxed step across the rim of
- * one ball into the next one lost the first.
+ * In the last third of a pixel the step is Newton's, to the estimated zero of the field: half of
+ * all evaluations were spent there, since at a grazing angle each checked step covers only a fixed
+ * share of the remaining distance. The step may pass into a surface before the spheres touch, but
+ * then it was at most two pixel widths long: with four, rims at deep zooms had twice the error for
+ * the same number of evaluations. A Newton step of at most 1.2 pixels that ends within 0.15 pixel
+ * is accepted unchecked and the march continues from there: without this 8 to 12 % of all
+ * evaluations were repetitions. For a fractal (MASU_SDF_ROUGH) a value that small proves nothing:
+ * three times as many depths had an error, so the spheres must touch. Rejected: accepting steps of
+ * two pixels, or relaxed ones, like that; 50 % more pixels of thin rods were on the wrong side.
+ * Rejected: accepting any step like that; a relaxed step across the rim of one ball into the next
+ * one missed the first.
  *
- * Newton's step from a sample below 0 leads back between it and the one before, and so it needs no
- * bracket of its own: the sample is the ray's new limit, no further step may pass half of what is
- * left to it, and the value before is halved, so that neither end stays for ever (the Illinois rule
- * of Dowell and Jarratt, BIT 11, 1971). Where the field jumps there is no 0: then what is left becomes
- * smaller than the tolerance. A sample that is near enough from above takes what is left by the last
- * slope, without another look. A camera inside a solid has no sample before: it sees it at the near
- * plane, as a clipped polygon's inside would. A field that is not a number is a miss. */
+ * A Newton step from a sample below 0 leads back between it and the one before, so it needs no
+ * separate bracket: the sample becomes the ray's limit, no step may pass half of the remaining
+ * interval, and the value before is halved, so that neither end is stuck (the Illinois rule of
+ * Dowell and Jarratt, BIT 11, 1971). If the field jumps there is no zero; then the interval shrinks
+ * below the tolerance. A sample that is close enough from above takes the final step by the last
+ * slope, without another evaluation. A camera inside a solid has no earlier sample: it sees the
+ * solid at the near plane, like the inside of a clipped polygon. A field that is not a number is a
+ * miss. */
 void march_between(inout march_state m, ray r, float f)
 {
     float pixel = r.pixel * m.t;
@@ -253,7 +264,7 @@ void march_between(inout march_state m, ray r, float f)
     float free = m.before_t + m.before_f;
     float reach = m.t - m.before_t;
     bool touched = f < enough;
-    /* A longer step: newton, as far as the field falls; else relaxed, with a slope of at most 0.9. */
+    /* A longer step: Newton's, to the estimated zero; else relaxed, with a slope of at most 0.9. */
     float fall = m.before_f - f;
     bool newton = f < newton_from * pixel && fall > 0.0;
     float rate = (newton ? reach : 1.9 * reach) /
@@ -263,7 +274,7 @@ void march_between(inout march_state m, ray r, float f)
     float most = m.narrowed ? 0.5 * (m.t + m.limit) : m.limit;
     next = next < most ? next : most;
     float end = m.narrowed ? m.t : next;
-    /* Where it may end. */
+    /* Whether the march may end here. */
     bool meet = m.narrowed || m.t <= free || m.t - f <= free ||
                 (touched && reach <= newton_reach * pixel) || is_sure(f, pixel, reach, m.before_f);
     bool through = reach > 0.0 && f < -enough;
@@ -295,8 +306,8 @@ void march_between(inout march_state m, ray r, float f)
     MASU_WENT_BACK(m.t)
 }
 
-/* The same of a ray that has met nothing below 0. Branches that end it early, since most samples need one or two of its
- * questions. */
+/* march_between() for a ray without a sample below 0. Early exits, since most samples need only one
+ * or two of the checks. */
 void march_near(inout march_state m, ray r, float f)
 {
     float pixel = r.pixel * m.t;
@@ -344,7 +355,7 @@ void march_near(inout march_state m, ray r, float f)
     m.t = next;
 }
 
-/* Two pixels' widths and more away: nothing that could stand for the surface, nothing to narrow down. */
+/* At two pixel widths or more: no candidate for the fallback sample, and nothing to bracket. */
 void march_far(inout march_state m, float f)
 {
     float free = m.before_t + m.before_f;
@@ -390,7 +401,7 @@ float march(ray r, out uint evals)
 
 #endif
 
-/* masu_normalize, of what mostly is neither tiny nor huge: half its operations. */
+/* masu_normalize(), faster for common lengths: half the operations. */
 vec3 unit_or(vec3 v, vec3 fallback)
 {
     float squared = dot(v, v);
@@ -401,10 +412,10 @@ vec3 unit_or(vec3 v, vec3 fallback)
 }
 
 /* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The
- * step grows with distance (0.02 pixel: a quarter of one, as the plain march takes, rounds every edge of
- * a city; FLIP 0.013 against 0.002) and with the coordinates (64 ulp: the least total of truncation and rounding
- * error). One loop, so that the field is compiled once here and not four times; `part` is the
- * nearest one. */
+ * step grows with distance (0.02 pixel; a quarter, as in the plain march, rounds every edge of a
+ * city: FLIP 0.013 against 0.002) and with the coordinates (64 ulp: the least sum of truncation and
+ * rounding error). A loop compiles the field once here instead of four times. `part`: the closest
+ * one. */
 vec3 normal_at(ray r, float t, out uint part)
 {
     vec3 p = world_at(r.direction, t);
@@ -420,7 +431,7 @@ vec3 normal_at(ray r, float t, out uint part)
         f = vec4(f.yzw, masu_sdf_with(p + corner, part));
         corner = i == 2 ? vec3(h) : corner.zxy;
 #ifdef MASU_SDF_KEEP
-        /* The first one tells what matters to the other three. */
+        /* The first sample selects the terms for the other three. */
         if (masu_keeping) {
             masu_list_bits = masu_kept;
             masu_margin = 0.0;
@@ -432,7 +443,7 @@ vec3 normal_at(ray r, float t, out uint part)
     return unit_or(sum, -r.direction);
 }
 
-/* The surface of a hit, and its normal; `known`: of half-space `part`. */
+/* The surface of a hit, and its normal. `known`: the hit is on half-space `part`. */
 masu_surface surface_met(ray r, float t, bool known, uint part, out vec3 n)
 {
     vec3 p = world_at(r.direction, t);

@@ -1,5 +1,5 @@
 /*
- * pack.glsl: the G-buffer's texels.
+ * pack.glsl: packing and unpacking of the G-buffer texels.
  *
  *   albedo, rgba8:  rgb  sqrt of linear albedo
  *                   a    perceptual roughness
@@ -9,48 +9,51 @@
  *                   bits 30-31        MASU_SURFACE_* flags
  *   With MASU_SURFACE_EMISSIVE the pixel of hdr holds the emitted radiance until light.comp has
  *   run, and bits 26-29:
- *                   0     it is not lit (masu_is_unlit)
+ *                   0     unlit (masu_is_unlit)
  *                   1-15  metallic, 0..14
- *   surface, rgba8, where MASU_SURFACE_MORE is set (else: specular 0.5, no coat, no relief):
+ *   surface, rgba8, if MASU_SURFACE_MORE is set (else: specular 0.5, no coat, no relief):
  *                   r    specular
- *                   g    clear coat, 4 bits, and its roughness, 4 bits; of a small relief, which has no
+ *                   g    clear coat, 4 bits, and its roughness, 4 bits; for a small relief, without
  *                        coat: factor of the specular terms at grazing angles
  *                   b    occlusion
- *                   a    0: no small relief; else what its shadows leave of a light, (1 + 254 f) / 255
- *   Where a scene has coats whose normal is not their base's (masu_own_coats) the normal of such a surface is the
- *   coat's, and a has its upper bit set; in 14 bits lies where the base's normal points (masu_lean_axes),
- *   the square root of x and y, 64 + 63 steps each:
+ *                   a    0: no small relief; else its self-shadowing factor f, as (1 + 254 f) / 255
+ *   If a scene has coats with a separate normal (masu_own_coats), the normal texel of such a
+ *   surface holds the coat's normal, and a has its upper bit set. 14 bits hold the direction of
+ *   the base normal (masu_lean_axes), square roots of x and y, 64 + 63 steps each:
  *                   r    bits 3-7 specular, 0..30; 0-2 of y the lowest
  *                   b    bits 4-7 occlusion; 0-3 of y the highest
- *                   a    bits 0-6 x; without bit 7 a relief's (1 + 126 f) / 255
- *   depth, float:   near / view z; 0: nothing there
+ *                   a    bits 0-6 x; without bit 7 the (1 + 126 f) / 255 of a relief
+ *   depth, float:   near / view z; 0: no surface
  *
- * 13 bits per axis leave a normal within 0.03 degrees. src/api_stats.c, masu_unpack_normal is the
- * twin in C; of surfaces with emission, measure/texel.c.
+ * 13 bits per axis leave a normal within 0.03 degrees. masu_unpack_normal in src/api_stats.c is the
+ * C copy; for surfaces with emission, measure/texel.c.
  *
- *   Where a scene has other lobes (masu_extra_lobes) such a surface has no coat: g is below 16, a has its upper bit set,
- *   and 23 bits are the lobe: 0-7 r, 8-14 a, 15-18 g, 19-22 the lower half of b, whose upper half is occlusion:
- *                   21-22  MASU_LOBE_*; of colours as hue: 11 bits, which channel is the brightest and the roots of
- *                          the other two relative to it, 25 steps each
+ *   If a scene has other lobes (masu_extra_lobes), such a surface has no coat: g is below 16, a has
+ *   its upper bit set, and 23 bits are the lobe: 0-7 r, 8-14 a, 15-18 g, 19-22 the lower half of b,
+ *   whose upper half is occlusion:
+ *                   21-22  MASU_LOBE_*; colours have an 11-bit hue: which channel is the brightest,
+ *                          and the square roots of the other two relative to it, 25 steps each
  *                   COLORED  0-7 root of the brightest f0, 8-18 hue
  *                   SHEEN    0-4 roughness, 5-9 root of the brightest channel, 10-20 hue
- *                   GRAIN    0-6 anisotropy, 7-13 angle of the grain (masu_lean_axes), half a turn, 14-20 specular
+ *                   GRAIN    0-6 anisotropy, 7-13 angle of the grain (masu_lean_axes), 180 degrees,
+ *                            14-20 specular
  *
- * A coat mirrors sharply and has all 26 bits; what lies below it is within 0.3 degrees where it leans by 6, 0.8 at
- * 30, 1.9 at 60; half of that in the mean. The other way round, or both in 13 bits, a polished coat would show steps.
+ * A coat has sharp reflections and gets all 26 bits; the base normal has an error within 0.3
+ * degrees if it is tilted by 6, 0.8 at 30, 1.9 at 60; half as much in the mean. With the precision
+ * the other way round, or with both in 13 bits, a polished coat would show steps.
  *
- * Emission has no place in the two texels. Ray hits (specular_hit, silhouettes.comp) have nothing
- * else; there, and in the G-buffer of devices with too few colour attachments
- * (masu_emission_packed), both emission and base share 36 bits (masu_pack_met). With
- * MASU_SURFACE_EMISSIVE bits 26-29 specify what albedo holds then:
- *                   0     rgb sqrt of radiance / 16: it is not lit
- *                   15    the same and a roughness: it is black, no metal, and lit
+ * The two texels have no room for emission. Ray hits (specular_hit, silhouettes.comp) have only
+ * these; there, and in the G-buffer of devices with too few colour attachments
+ * (masu_emission_packed), emission and base share 36 bits (masu_pack_met). With
+ * MASU_SURFACE_EMISSIVE bits 26-29 specify the content of albedo:
+ *                   0     rgb sqrt of radiance / 16: unlit
+ *                   15    the same and a roughness: black, no metal, and lit
  *                   1-14  roughness, and a 32-bit value:
  *                         bits 0-4, 5-9, 10-14 sqrt of albedo; 15 metal;
  *                         16-22 fourth root of the brightest channel's radiance / 16; 23-31 the
  *                         other two relative to it, sqrt, 13 steps each: (13 channel + next) 13 +
  *                         last
- * Black surfaces (lamps, screens) lose nothing. Of others the radiance is within 3 % at 1 and 6 %
+ * Black surfaces (lamps, screens) lose nothing. For others the radiance is within 3 % at 1 and 6 %
  * at 1/16, its hue within 1/24 and the albedo within 1/62 of the square root's range, roughness
  * within 1/26.
  */
@@ -60,9 +63,9 @@
 #include "shared/materials.h"
 #include "shared/guard.glsl"
 
-const float masu_emissive_range = 16.0;         /* of the 36 bits */
-const float masu_emissive_most = 65504.0;       /* of hdr */
-const float masu_emissive_least = 1.0 / 1024.0; /* what shines less than that does not */
+const float masu_emissive_range = 16.0;         /* largest radiance of the 36 bits */
+const float masu_emissive_most = 65504.0;       /* largest radiance of hdr */
+const float masu_emissive_least = 1.0 / 1024.0; /* lower radiance means no emission */
 
 layout(constant_id = 15) const bool masu_emission_packed = false;
 
@@ -74,15 +77,16 @@ struct masu_surface {
     float specular;       /* reflectance of a dielectric at normal incidence / 0.08, 0..1 */
     float coat;           /* clear coat, 0..1 */
     float coat_roughness; /* perceptual, 0..1 */
-    float occlusion;      /* what of the ambient light its own relief lets through, 0..1 */
-    float shadow;         /* what the shadows of its relief leave of a light, 0..1; below 0: no relief */
+    float occlusion;      /* share of the ambient light that its relief lets through, 0..1 */
+    float shadow;         /* self-shadowing factor of its relief, 0..1; below 0: no relief */
     float edge;           /* factor of the specular terms at grazing angles, 0..1 */
-    vec2 lean;            /* of what lies below a coat of another normal: x and y of its own, in masu_lean_axes */
-    uint lobe;            /* 23 bits, see above; 0: none beyond the plain one */
+    vec2 lean;            /* of a base with a separate normal: its x and y in masu_lean_axes of the
+                           * coat */
+    uint lobe;            /* 23 bits, see above; 0: no additional lobe */
 };
 
 #ifdef MASU_SURFACE
-/* The scene has coats with maps or normals of their own. */
+/* The scene has coats with separate maps or normals. */
 #ifdef MASU_OWN_COATS
 const bool masu_own_coats = true;
 #else
@@ -143,7 +147,8 @@ void masu_set_lobe(inout masu_surface s, uint lobe)
                : kind == MASU_LOBE_GRAIN ? float(lobe >> 14 & 127u) / 127.0 : 0.5;
 }
 
-/* By a texel of the lobe's map: rgb times its colour, alpha times its strength, of a sheen its roughness. */
+/* Multiplies a lobe by a texel of its map: rgb scales its colour, alpha its strength, or the
+ * roughness of a sheen. */
 void masu_scale_lobe(inout masu_surface s, vec4 texel)
 {
     if (masu_has_lobe(s, MASU_LOBE_COLORED)) {
@@ -161,7 +166,7 @@ void masu_scale_lobe(inout masu_surface s, vec4 texel)
 }
 #endif
 
-/* What a material has as its specular factor (masu_specular_of). */
+/* Applies the specular factor of a material (masu_specular_of). */
 void masu_take_specular(inout masu_surface s, float given)
 {
     s.specular = given;
@@ -172,7 +177,7 @@ void masu_take_specular(inout masu_surface s, float given)
 #endif
 }
 
-/* Within -1..1 but for its rounding, whatever the bits of n. */
+/* Octahedral encoding of any n: within -1..1 apart from rounding. */
 vec2 masu_oct_encode(vec3 n)
 {
     float sum = abs(n.x) + abs(n.y) + abs(n.z);
@@ -185,8 +190,8 @@ vec2 masu_oct_encode(vec3 n)
     return p;
 }
 
-/* Any pair in -1..1 gives a unit vector: the octahedron comes no nearer to the origin than
- * 1/sqrt(3). */
+/* Any pair in -1..1 gives a unit vector: the octahedron is at least 1/sqrt(3) away from the
+ * origin. */
 vec3 masu_oct_decode(vec2 p)
 {
     vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
@@ -207,20 +212,21 @@ vec3 masu_emitted(masu_surface s)
     return masu_sane(s.emissive, 0.0, masu_emissive_most);
 }
 
-/* It shines and has neither colour nor gloss: what falls on it is not seen. No light, shadow or reflection of
- * it is computed. */
+/* It emits, and has neither albedo nor gloss: incident light has no visible effect, and no light,
+ * shadow or reflection is computed for it. */
 bool masu_is_unlit(masu_surface s)
 {
     return masu_is_emissive(s) && !(masu_brightest(masu_sane(s.albedo, 0.0, 1.0)) > 0.0) && !(s.roughness < 1.0) && !(s.coat > 0.0);
 }
 
-/* ... of a packed normal. */
+/* masu_is_unlit() of a packed normal. */
 bool masu_is_unlit_texel(uint normal)
 {
     return (normal >> 26 & 31u) == MASU_SURFACE_EMISSIVE << 4;
 }
 
-/* The texel of albedo, and bits 26-31 of the normal, of what emits; `glow`, `albedo` and `roughness` are sane. */
+/* The texel of albedo, and bits 26-31 of the normal, of an emitter; `glow`, `albedo` and
+ * `roughness` are sane. */
 void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, out vec4 texel, out uint look)
 {
     float brightest = masu_brightest(glow);
@@ -239,15 +245,14 @@ void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, 
     look = MASU_SURFACE_EMISSIVE << 30 | (unlit ? 0u : colored ? 1u + uint(roughness * 13.0 + 0.5) : 15u) << 26;
 }
 
-/* The texel of albedo, and the bits of the normal's texel that are not its direction, without
- * emission of its own. */
+/* The texel of albedo, and the bits of the normal texel except its direction, without emission. */
 void masu_pack_plain(masu_surface s, out vec4 texel, out uint look)
 {
     texel = vec4(sqrt(masu_sane_unit(s.albedo)), masu_sane_unit(s.roughness));
     look = uint(masu_sane_unit(s.metallic) * 15.0 + 0.5) << 26;
 }
 
-/* ... of a ray hit, which has no other place for emission. */
+/* The same for a ray hit, with emission. */
 void masu_pack_met_look(masu_surface s, out vec4 texel, out uint look)
 {
     vec3 glow = masu_emissive_range * masu_sane_unit(s.emissive * (1.0 / masu_emissive_range));
@@ -259,7 +264,7 @@ void masu_pack_met_look(masu_surface s, out vec4 texel, out uint look)
     }
 }
 
-/* ... of the G-buffer. Where the flag EMISSIVE is set hdr takes masu_emitted(s). */
+/* The same for the G-buffer. If the flag EMISSIVE is set, hdr receives masu_emitted(s). */
 void masu_pack_look(masu_surface s, out vec4 texel, out uint look)
 {
     if (masu_emission_packed) {
@@ -292,8 +297,9 @@ void masu_pack_met(vec3 n, masu_surface s, out vec4 albedo, out uint normal)
 }
 
 #ifdef MASU_SURFACE
-/* Two directions across a unit normal, for every one (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6-1,
- * 2017). They turn round where z changes its sign: whoever unpacks must have the very normal of whoever packed. */
+/* Tangent and bitangent for any unit normal (Duff et al., "Building an Orthonormal Basis,
+ * Revisited", JCGT 6-1, 2017). They flip at the sign change of z: packing and unpacking must use
+ * exactly the same normal. */
 void masu_lean_axes(vec3 n, out vec3 t, out vec3 b)
 {
     float sign_z = n.z < 0.0 ? -1.0 : 1.0;
@@ -303,7 +309,7 @@ void masu_lean_axes(vec3 n, out vec3 t, out vec3 b)
     b = vec3(c, sign_z + n.y * n.y * a, -n.y);
 }
 
-/* Where `below` points, as a surface with the normal n has it; both unit. */
+/* The direction of `below` in the axes of the normal n; both unit. */
 vec2 masu_lean_of(vec3 n, vec3 below)
 {
     vec3 t, b;
@@ -311,10 +317,10 @@ vec2 masu_lean_of(vec3 n, vec3 below)
     return vec2(dot(t, below), dot(b, below));
 }
 
-/* The normal of what lies below the coat, which has n. */
+/* The base normal below a coat with the normal n. */
 vec3 masu_below(vec3 n, vec2 lean)
 {
-    if (lean.x == 0.0 && lean.y == 0.0) { /* most of any picture */
+    if (lean.x == 0.0 && lean.y == 0.0) { /* most pixels */
         return n;
     }
     vec3 t, b;
@@ -324,7 +330,8 @@ vec3 masu_below(vec3 n, vec2 lean)
     return masu_normalize(below, n);
 }
 
-/* The grain of a surface as its texels have it: by its angle in the axes of the normal n; grain: any length. */
+/* Packs the grain direction of a surface as an angle in the axes of the normal n; grain: any
+ * length. */
 void masu_turn_grain(inout masu_surface s, vec3 n, vec3 grain)
 {
     vec3 t, b;
@@ -466,7 +473,7 @@ bool masu_has_emission(uint normal)
     return (masu_unpack_flags(normal) & MASU_SURFACE_EMISSIVE) != 0u;
 }
 
-/* Surface of a ray hit's two texels, without the normal. */
+/* Unpacks the two texels of a ray hit, without the normal. */
 masu_surface masu_unpack_met(vec4 texel, uint normal)
 {
     masu_surface s = masu_plain_surface(texel.rgb * texel.rgb, texel.a);
@@ -478,7 +485,7 @@ masu_surface masu_unpack_met(vec4 texel, uint normal)
     return s;
 }
 
-/* ... of the G-buffer's, without emission unless that is packed: it is in hdr. */
+/* The same for the G-buffer, without emission unless that is packed: it is in hdr. */
 masu_surface masu_unpack_look(vec4 texel, uint normal)
 {
     if (masu_emission_packed) {

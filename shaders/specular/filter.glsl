@@ -1,13 +1,13 @@
 /*
- * filter.glsl: what the filters of reflections share: luma and chroma, how far over a surface a reflection
- * stays the same, and words of images.
+ * filter.glsl: shared by the filters of reflections: luma and chroma, the radius over which a
+ * reflection is similar, and the packing of images.
  *
- *   specular_color, rgba16f   rgb mean radiance over frames; a mean square of its luma. As kept for the next
- *                            frame a is below 0 where nothing is traced
- *   specular_length, rg32ui     x  low half: distance of what is met, a half; high half: frames in the mean,
+ *   specular_color, rgba16f    rgb mean radiance over frames; a mean square of its luma. As stored for
+ *                              the next frame, a is below 0 if nothing is traced
+ *   specular_length, rg32ui  x  low half: hit distance, a half float; high half: frames in the mean,
  *                               in 1/64
- *                            y  by how many pixels what is seen has moved since the previous frame, two
- *                               halves; all bits: it was not there
+ *                            y  motion of the reflection since the previous frame in pixels, two half
+ *                               floats; all bits: disoccluded
  */
 #ifndef MASU_SPECULAR_FILTER_GLSL
 #define MASU_SPECULAR_FILTER_GLSL
@@ -15,12 +15,12 @@
 #include "specular/guide.glsl"
 #include "specular/origin.glsl"
 
-const uint masu_unmoved = 0xFFFFFFFFu; /* there is no telling how it has moved */
+const uint masu_unmoved = 0xFFFFFFFFu; /* unavailable motion */
 
-/* Squares of luma have to fit into halfs. */
+/* Squares of luma must fit into half floats. */
 const float masu_most_radiance = 250.0;
 
-/* Half a step of the guide's 63: mirrors have 0 there. Their rays hold no noise, and a spatial filter
+/* Half a step of the guide's 63: mirrors have 0. Their rays are noise-free, and a spatial filter
  * would only blur them. */
 const float masu_mirror_roughness = 0.5 / 63.0;
 
@@ -29,8 +29,8 @@ vec3 masu_tamed(vec3 radiance)
     return masu_sane(radiance, 0.0, masu_most_radiance);
 }
 
-/* Luma, chroma orange, chroma green (Malvar and Sullivan, "YCoCg-R", JVT-I014, 2003; the form that is
- * not lossless). */
+/* Luma, chroma orange, chroma green (Malvar and Sullivan, "YCoCg-R", JVT-I014, 2003; the lossy
+ * form). */
 vec3 masu_ycocg(vec3 c)
 {
     return vec3(0.25 * (c.r + c.b) + 0.5 * c.g, 0.5 * (c.r - c.b), 0.5 * c.g - 0.25 * (c.r + c.b));
@@ -75,22 +75,22 @@ float masu_age_far(uint word)
     return masu_sane(unpackHalf2x16(word).x, 0.0, 65504.0);
 }
 
-/* Whether a surface point belongs to the plane of another, both seen by texels of a width of `width`: on
- * what is curved the neighbour's point lies off the plane by less than the texel is wide. */
+/* Whether a surface point is on the plane of another, for texels of width `width`: on a curved
+ * surface the neighbour's point deviates from the plane by less than the width. */
 bool masu_same_plane(vec3 away, vec3 normal, float width)
 {
     return abs(dot(away, normal)) < width;
 }
 
-/* How wide a traced texel is at a point. */
+/* Width of a traced texel at a point. */
 float masu_texel_width(masu_guide g)
 {
     return masu_specular_width(g) * float(push.traced_size);
 }
 
-/* 1 / radius of the surface, 0 of a flat or hollow one, by how the normals of the neighbours lean. The mean of
- * both axes: a cylinder counts as a sphere of twice its radius. A hollow mirror shows things before it or
- * magnified, which would need its focus: it counts as flat. */
+/* 1 / radius of the surface, 0 if flat or concave, from the normals of the neighbours. The mean of
+ * both axes: a cylinder is treated as a sphere of twice its radius. A concave mirror reflects from
+ * in front of it or magnifies, which would need its focus: it is treated as flat. */
 float masu_guide_curvature(usampler2D guides, ivec2 texel, masu_guide g, vec3 point)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
@@ -118,15 +118,15 @@ float masu_guide_curvature(usampler2D guides, ivec2 texel, masu_guide g, vec3 po
     return count > 0.0 ? max(sum / count, 0.0) : 0.0;
 }
 
-/* Distance behind a convex mirror at which it shows what lies that far before it: the mirror equation,
- * 1/image = 1/far + 2/radius. */
+/* Distance of the virtual image behind a convex mirror for an object at distance `far`: the mirror
+ * equation, 1/image = 1/far + 2/radius. */
 float masu_image_far(float far, float curvature)
 {
     return far / (1.0 + 2.0 * curvature * far);
 }
 
-/* Radius, in texels, within which neighbours see about the same through their lobes: the width that the lobe
- * has at the image of what is met, as the eye sees it on the surface. */
+/* Radius, in texels, within which the lobes of neighbours see about the same: the width of the lobe
+ * at the virtual image of the hit, projected from the camera onto the surface. */
 float masu_specular_reach(masu_guide g, vec3 point, float far, float curvature)
 {
     float image = masu_image_far(far, curvature);
@@ -135,8 +135,8 @@ float masu_specular_reach(masu_guide g, vec3 point, float far, float curvature)
     return g.roughness * g.roughness * seen / max(masu_texel_width(g), 1e-9);
 }
 
-/* Share of the previous frame that a mean over so many sixtieths of a second keeps, whatever the frame
- * rate. */
+/* Share of the previous frame in a mean over that number of sixtieths of a second, independent of
+ * the frame rate. */
 float masu_time_share(float sixtieths)
 {
     float step = abs(masu_sane(frame.eye_lo.w, -1.0, 1.0));

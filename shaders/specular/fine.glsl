@@ -1,7 +1,7 @@
 /*
- * fine.glsl: means over frames of single pixels, four to a traced texel: a word each in the order of the
- * guide's numbers, three numbers of 9 bits that share an exponent of 5 (as VK_FORMAT_E5B9G9R9); all bits:
- * the pixel has none.
+ * fine.glsl: means over frames of single pixels, four per traced texel: one 32-bit value per pixel
+ * in the order of the guide's numbers, three 9-bit numbers with a shared exponent of 5 (as
+ * VK_FORMAT_E5B9G9R9); all bits set: the pixel has none.
  */
 #ifndef MASU_SPECULAR_FINE_GLSL
 #define MASU_SPECULAR_FINE_GLSL
@@ -11,11 +11,11 @@
 
 const uint masu_fine_none = 0xFFFFFFFFu;
 
-/* Roughness up to which a lobe meets so much of one thing that few rays show it. */
+/* Roughness up to which a lobe is so narrow that few rays are enough. */
 const float masu_fine_narrow = 0.08;
 
-/* How much of a pixel's light its own mean is, the rest that of the texels around: a lobe this wide
- * blurs what it mirrors by more than two pixels. Where the four are not one surface it is all. */
+/* Weight of a pixel's own mean; the rest is the mean of the texels around. A lobe this wide blurs
+ * reflections by more than two pixels. 1 if the four pixels are not one surface. */
 float masu_fine_share(masu_guide g, float roughness)
 {
     return g.mixed ? 1.0 : 1.0 - smoothstep(0.1, 0.25, roughness);

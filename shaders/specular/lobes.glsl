@@ -1,14 +1,14 @@
 /*
- * lobes.glsl: the specular lobes of bsdf.glsl one by one, exactly: for the reference, which multiplies each
- * ray by them instead of by their albedo. After brdf/bsdf.glsl.
+ * lobes.glsl: exact evaluation of the separate specular lobes of bsdf.glsl: for the reference,
+ * which multiplies each ray by them instead of by their albedo. After brdf/bsdf.glsl.
  */
 #ifndef MASU_SPECULAR_LOBES_GLSL
 #define MASU_SPECULAR_LOBES_GLSL
 
 #include "brdf/bsdf.glsl"
 
-/* f * N.L * pi of light from l, unit, that the base mirrors and that its coat does; without what comes back
- * after more than one bounce, which counts as light from everywhere (masu_bsdf_diffuse). */
+/* f * N.L * pi for light from l, unit, of the base and of its coat; without multiple scattering
+ * between facets, which is part of the ambient light (masu_bsdf_diffuse). */
 void masu_lobes(masu_bsdf b, vec3 l, out vec3 base, out float coat)
 {
     base = vec3(0.0);

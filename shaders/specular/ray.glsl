@@ -1,16 +1,16 @@
 /*
- * ray.glsl: the ray of a traced texel and what it meets, as images hold them.
+ * ray.glsl: image formats of a traced texel's ray and of its hit.
  *
  *   specular_ray, rg32ui   x  direction, octahedral, 16 + 16 bits
- *                          y  root of the density per steradian, and what the ray is worth to its lobe, 1 in the mean: two
- *                             halves; with debug.reference what the radiance is to be multiplied by, three numbers
- *                             that share an exponent (9 bits each and 5)
- *   specular_hit, rgba32ui x  distance, a float; below 0: nothing is met
- *                          of a polygon  y number of the traced instance, z of the triangle, w barycentric
- *                             coordinates of its second and third corner, 16 bits each
- *                          of the SDF    y bit 31 set, then where the point was in the previous frame minus where
- *                             it is, three times 8 bits with a sign that share an exponent of 7; z normal
- *                             as in the G-buffer, w albedo (sqrt) or radiance as there, roughness, 8 bits each
+ *                          y  square root of the density per steradian, and the weight of the ray for
+ *                             its lobe, 1 in the mean: two half floats; with debug.reference the factor
+ *                             of the radiance, three numbers with a shared exponent (9 bits each and 5)
+ *   specular_hit, rgba32ui x  distance, a float; below 0: a miss
+ *                          of a polygon  y number of the traced instance, z of the triangle, w
+ *                             barycentric coordinates of its second and third corner, 16 bits each
+ *                          of the SDF    y bit 31 set, then the point's previous minus present position,
+ *                             three signed 8-bit numbers with a shared exponent of 7; z normal as in the
+ *                             G-buffer, w albedo (sqrt) or radiance as there, roughness, 8 bits each
  */
 #ifndef MASU_SPECULAR_RAY_GLSL
 #define MASU_SPECULAR_RAY_GLSL
@@ -31,11 +31,12 @@ vec3 masu_unpack_direction(uint word)
     return masu_oct_decode(unpackSnorm2x16(word));
 }
 
-/* What a ray is worth at least, or a texel whose rays all go below the surface would never forget what it was; and at most. */
+/* Least weight of a ray: a texel whose rays all end below the surface would otherwise keep an
+ * outdated mean; and the highest. */
 const float masu_least_worth = 0.1;
 const float masu_most_worth = 4.0;
 
-/* Lobes of mirrors have densities beyond what a half holds; their roots end at 31,600. */
+/* Lobes of mirrors have densities that exceed a half float; their square roots end at 31,600. */
 uint masu_pack_drawn(float density, float worth)
 {
     return packHalf2x16(vec2(masu_sqrt(masu_sane(density, 1e-6, 1e9)), masu_sane(worth, masu_least_worth, masu_most_worth)));
@@ -52,15 +53,16 @@ float masu_drawn_worth(uint word)
     return masu_sane(unpackHalf2x16(word).y, masu_least_worth, masu_most_worth);
 }
 
-/* The share of a ray in a mean, of one that is worth as much as the mean of them. */
+/* The share of a ray in a mean, given the share of one with the mean's weight. */
 float masu_worthy_share(float share, float worth)
 {
     return share * worth / max(share * worth + 1.0 - share, 1e-6);
 }
 
-/* Three numbers of 0 to 65280 with one exponent (VK_FORMAT_E5B9G9R9's), rounded up with probability of what
- * is cut off, `chance` being even over 0..1: the mean of many is exact, as that of a mirror's, which are all
- * alike, would not be. The largest stays a step below what the exponent can hold, for that. */
+/* Three numbers of 0 to 65280 with a shared exponent (VK_FORMAT_E5B9G9R9), rounded up with the
+ * probability of the fraction; `chance` is uniform in 0..1. The mean of many is exact, while
+ * rounding to nearest would bias the identical values of a mirror. The largest is kept one step
+ * below the range of the exponent for that. */
 uint masu_pack_shared(vec3 v, float chance)
 {
     vec3 c = masu_sane(v, 0.0, 65280.0);
@@ -78,13 +80,14 @@ vec3 masu_unpack_shared(uint word)
     return vec3(word & 511u, word >> 9 & 511u, word >> 18 & 511u) * scale;
 }
 
-/* How far the ray went; negative: it met nothing. */
+/* Length of the ray; negative: a miss. */
 float masu_met_at(uvec4 hit)
 {
     return masu_sane(uintBitsToFloat(hit.x), -1.0, frame.trace_anchor.w);
 }
 
-/* A move as y of a hit of the SDF: within 1/127 of its longest coordinate, up to 2^63; shorter than 2^-63 is 0. */
+/* A displacement as y of an SDF hit: within 1/127 of its longest coordinate, up to 2^63; shorter
+ * than 2^-63 is 0. */
 uint masu_pack_sdf_motion(vec3 v)
 {
     vec3 c = masu_sane(v, -9e18, 9e18);

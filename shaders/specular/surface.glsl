@@ -1,5 +1,5 @@
 /*
- * surface.glsl: the surface under a pixel, for the passes of reflections that look at the whole G-buffer:
+ * surface.glsl: the surface of a pixel, for the reflection passes that read the whole G-buffer:
  * images at bindings 0 to 2 of their set, with MASU_SURFACE the surface image at 3.
  */
 #ifndef MASU_SPECULAR_SURFACE_GLSL
@@ -18,7 +18,7 @@ layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D surface_image;
 #define MASU_AFTER_SURFACE 3
 #endif
 
-/* What is not lit, the sky and what only shines, mirrors nothing: depth 0. */
+/* The sky and unlit emitters have no reflection: depth 0. */
 struct masu_pixel {
     masu_surface surface;
     uint normal; /* packed */

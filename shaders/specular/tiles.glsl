@@ -1,6 +1,6 @@
 /*
- * tiles.glsl: the list of tiles that trace reflections, and the texel that an invocation of an indirect
- * pass is for.
+ * tiles.glsl: the list of tiles that trace reflections, and the texel of an invocation of an
+ * indirect pass.
  */
 #ifndef MASU_SPECULAR_TILES_GLSL
 #define MASU_SPECULAR_TILES_GLSL
@@ -22,7 +22,7 @@ uint masu_specular_columns()
     return (pc.output_width + uint(MASU_GROUP) - 1u) / uint(MASU_GROUP);
 }
 
-/* Of this workgroup of 8x8. */
+/* The texel of this invocation in a workgroup of 8x8. */
 uvec2 masu_specular_texel()
 {
     uint tile = specular_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];

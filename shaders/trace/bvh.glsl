@@ -6,36 +6,32 @@
  *   masu_trace_vertices[]   the vertices of the blob
  *   MASU_TRACE_LANES        how many invocations its group has
  * and may define
- *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) false: the ray goes on through this point
- *   MASU_TRACE_COUNTERS                                    counts nodes and triangles that were looked at
+ *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) false: the ray passes through
+ *   MASU_TRACE_COUNTERS                                    counts visited nodes and triangles
  *
- * Rays live in world space minus the anchor. Directions need not have unit length; t counts them. A
- * ray that is not finite, has no direction, or begins farther than 1e15 out hits nothing, and no
- * ray looks at more than MASU_TRACE_VISITS nodes; one that would has masu_trace_exceeded set, and
- * hits nothing.
+ * Rays are in world space minus the anchor. Directions need not have unit length; t is in their unit.
+ * A ray that is not finite, has no direction, or begins farther than 1e15 out hits nothing. A ray
+ * that would visit more than MASU_TRACE_VISITS nodes sets masu_trace_exceeded, and hits nothing.
  *
- * BOXES. Near and far planes are chosen by the signs of the direction, so that no min or max meets
- * a product 0 Inf (Ize 2013, Robust BVH Ray Traversal); a direction's smallest components count as
- * 1e-12 of its largest. The distance to a plane is (origin - o) / d + q scale / d with a q of 0 to
- * 255: both terms may be large where their sum is small, so that a relative margin on the sum, as
- * in that paper, would not do. The margin here is relative to the terms, which bounds the rounding
- * of all of it.
+ * BOXES. Near and far planes are chosen by the signs of the direction, so that no min or max has an
+ * operand 0 Inf (Ize 2013, Robust BVH Ray Traversal); the smallest components of a direction are
+ * raised to 1e-12 of its largest. The distance to a plane is (origin - o) / d + q scale / d with a q of 0 to
+ * 255: both terms may be large with a small sum, so a relative margin on the sum, as in that paper,
+ * would not be enough. The margin here is relative to the terms, which bounds the total rounding.
  *
  * TRIANGLES. Watertight, Woop, Benthin and Wald 2013: vertices are sheared so that the ray is the z
  * axis, and edge functions have signs. An edge function is a difference of two rounded products,
  * and rounding is monotone: its sign is right or it is 0, and the triangle on the other side of the
- * edge gets the same number with the other sign. 0 counts as inside. So no ray slips through
- * between triangles that share vertices, and the paper's second try in double has nothing left to
- * decide. `precise` keeps a fused multiply-add from rounding just one of the products.
+ * edge gets the same number with the other sign. 0 is inside. So no ray passes between triangles
+ * that share vertices, and the paper's second attempt in double is unnecessary. `precise` keeps a fused multiply-add from rounding just one of the products.
  *
- * LOOPS. What costs is loading: a software driver loads each word for each lane. So a node is 12
- * words, its children that are left are one word of stack however many they are, and the tree over
- * instances has a loop of its own around that of a mesh instead of sharing one with it, where each
- * step would load from both buffers.
+ * LOOPS. The cost is in loads: a software driver loads each value for each lane. So a node is 12
+ * uints, its remaining children are one uint of the stack, and the tree over instances has a
+ * separate loop around the loop of a mesh: in a shared loop each step would load from both buffers.
  */
 #ifndef MASU_TRACE_BVH_GLSL
 #define MASU_TRACE_BVH_GLSL
-#extension GL_EXT_shader_integer_mix : require /* a part of GLSL from version 450 on only */
+#extension GL_EXT_shader_integer_mix : require /* part of GLSL only from version 450 on */
 
 #include "shared/guard.glsl"
 #include "shared/trace.h"
@@ -45,14 +41,14 @@
 #endif
 
 struct masu_ray_hit {
-    float t;            /* negative: nothing was hit, and the rest says nothing */
-    uint triangle;      /* of TRACE_TRIANGLES */
-    uint instance;      /* of TRACE_INSTANCES */
-    uint record;        /* of the frame's records, for masu_trace_record_row */
+    float t;            /* negative: a miss, and the other members are undefined */
+    uint triangle;      /* index into TRACE_TRIANGLES */
+    uint instance;      /* index into TRACE_INSTANCES */
+    uint record;        /* index of the frame's records, for masu_trace_record_row */
     vec2 barycentrics;  /* weights of the second and third vertex */
 };
 
-/* Whether a ray since the shader began had to be given up. */
+/* Whether any ray of this invocation was aborted. */
 bool masu_trace_exceeded = false;
 #ifdef MASU_TRACE_COUNTERS
 uint masu_trace_nodes_seen = 0u;
@@ -61,12 +57,12 @@ uint masu_trace_triangles_seen = 0u;
 
 const float masu_trace_reach = 1e15;
 const float masu_trace_flat = 1e-12;
-const float masu_trace_margin = 1e-6; /* 8 roundings, and a division that is off by 2.5 units */
+const float masu_trace_margin = 1e-6; /* 8 roundings, and a division with an error of 2.5 units */
 
-/* Children of nodes that are still to be looked at, a word for each node: their first << 8, how
- * many are left << 6, which comes next, 2 bits each. In shared memory, of which a scene takes a word for each level
- * of its trees and invocation (src/device/pipelines.c): an array of an invocation's own goes to memory on every GPU here, with
- * 2 KB for each lane on Intel's. */
+/* Remaining children of nodes, one uint per node: their first << 8, their count << 6, their order,
+ * 2 bits each. In shared memory, one uint per level of the scene's trees and invocation
+ * (src/device/pipelines.c): a private array would be in memory on every GPU tested, with 2 KB for
+ * each lane on Intel's. */
 layout(constant_id = 9) const int masu_trace_levels = MASU_TRACE_STACK;
 shared uint masu_trace_stack[masu_trace_levels * MASU_TRACE_LANES];
 
@@ -77,8 +73,8 @@ uint masu_trace_slot(int depth)
 
 struct masu_trace_ray {
     vec3 origin;
-    vec3 inverse;  /* of the direction */
-    bvec3 forward; /* its signs */
+    vec3 inverse;  /* 1 / the components of the direction */
+    bvec3 forward; /* their signs */
 };
 
 masu_trace_ray masu_trace_prepare(vec3 origin, vec3 direction)
@@ -101,12 +97,11 @@ uvec4 masu_trace_sort(uvec4 k)
     return uvec4(b.x, min(b.y, b.z), max(b.y, b.z), b.w);
 }
 
-/* Distances at which the ray enters the boxes of the four children, as the bits of floats; types of
- * the children, hit or not. t_min is not negative, and that is why integers can do it: bits of
- * positive floats sort as they do, any negative one is below them, and which of two negative ones
- * is kept does not matter. A NaN on the way in is above all, or below; either way what comes out is
- * defined, which of min(float) it is not. And a software driver has one instruction for it instead
- * of three. */
+/* Entry distances of the boxes of the four children, as the bits of floats; hit or miss, and types
+ * of the children. t_min is not negative, so integers can be used: the bits of positive floats sort
+ * like the floats, any negative one is below them, and the choice between two negative ones does
+ * not matter. A NaN input is above or below all; either way the result is defined, unlike
+ * min(float). A software driver has one instruction for it instead of three. */
 void masu_trace_boxes(uvec4 a, uvec4 b, uvec4 c, masu_trace_ray ray, float t_min, float t_max,
                       out ivec4 enter, out bvec4 hit, out uvec4 types)
 {
@@ -129,7 +124,7 @@ void masu_trace_boxes(uvec4 a, uvec4 b, uvec4 c, masu_trace_ray ray, float t_min
     types = (uvec4(a.w) >> uvec4(24u, 26u, 28u, 30u)) & 3u;
 }
 
-/* Of those of a type, by distance. */
+/* The wanted children, sorted by distance. */
 uvec4 masu_trace_order(ivec4 enter, bvec4 wanted)
 {
     uvec4 keys = (uvec4(enter) & ~3u) | uvec4(0u, 1u, 2u, 3u);
@@ -147,8 +142,8 @@ bvec4 masu_trace_both(bvec4 a, bvec4 b)
     return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w);
 }
 
-/* The next node: of `hits` children in this order the first, else of those that are left the
- * latest. Without any `going` becomes false. */
+/* Selects the next node: the first of `hits` children in this order, else the most recent remaining
+ * child. If there is none, `going` becomes false. */
 void masu_trace_next(uint child, uint hits, uvec4 order, int bottom, inout uint node,
                      inout uint rest, inout int depth, inout bool going)
 {
@@ -170,7 +165,7 @@ void masu_trace_next(uint child, uint hits, uvec4 order, int bottom, inout uint 
 }
 
 struct masu_trace_shear {
-    vec3 shear; /* xy: of the direction over its largest component; z: 1 / that component */
+    vec3 shear; /* xy: of the direction divided by its largest component; z: 1 / that component */
     bvec2 axis; /* the largest is x, y; else z */
 };
 
@@ -190,7 +185,7 @@ vec3 masu_trace_corner(uint vertex, vec3 origin, masu_trace_shear s)
     return vec3(sheared, v.z * s.shear.z);
 }
 
-/* Distance and weights of the second and third corner; x is negative where it is not hit. */
+/* Distance and weights of the second and third corner; x is negative for a miss. */
 vec3 masu_trace_triangle(uvec3 vertices, vec3 origin, masu_trace_shear s, float t_min, float t_max)
 {
     vec3 a = masu_trace_corner(vertices.x, origin, s);
@@ -214,8 +209,7 @@ vec4 masu_trace_record_row(uint record, uint row)
         masu_trace_frame[masu_trace_frame[0].x + record * uint(MASU_TRACE_RECORD_UVEC4) + row]);
 }
 
-/* A vector of an instance's object space that stands on a surface, to world space; not of unit
- * length. */
+/* Transforms a normal of an instance to world space; not of unit length. */
 vec3 masu_trace_normal(uint record, vec3 normal)
 {
     return masu_trace_record_row(record, 0u).xyz * normal.x +
@@ -237,11 +231,11 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
 
     uint top_node = 0u, top_rest = 0u, visits = 0u, records = masu_trace_frame[0].x;
     uint triangles = masu_trace_static[0].x;
-    uint waiting = 0u; /* instances of a node: slots as in masu_trace_stack */
+    uint waiting = 0u; /* pending instances of a node: packed as in masu_trace_stack */
     uint waiting_item = 0u;
     int depth = 0;
     for (int i = 0; i < MASU_TRACE_VISITS; i++) {
-        /* Each time anew: kept, it would take registers from the loop of the mesh. */
+        /* Recomputed each time: kept, it would take registers from the mesh loop. */
         masu_trace_ray world = masu_trace_prepare(origin, direction);
         for (int k = 0; k < MASU_TRACE_VISITS; k++) {
             if (waiting != 0u || !top_going || visits >= uint(MASU_TRACE_VISITS)) break;
@@ -257,7 +251,7 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
             bvec4 leaf = masu_trace_both(hit, greaterThan(types, uvec4(1u)));
             uvec4 slots = masu_trace_order(enter, leaf);
             uint leaves = masu_trace_count(leaf);
-            /* Leaves have one instance each, and come behind the nodes. */
+            /* Leaves have one instance each, and follow the nodes. */
             slots -= masu_trace_count(inner);
             uint turns = (slots.x & 3u) | (slots.y & 3u) << 2 | (slots.z & 3u) << 4 | slots.w << 6;
             waiting = leaves == 0u ? 0u : leaves << 8 | (turns & 255u);
@@ -342,13 +336,13 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
     return best;
 }
 
-/* The nearest triangle at t_min <= t < t_max. */
+/* The closest triangle at t_min <= t < t_max. */
 masu_ray_hit masu_trace(vec3 origin, vec3 direction, float t_min, float t_max)
 {
     return masu_trace_walk(origin, direction, t_min, t_max, false);
 }
 
-/* Whether there is any. */
+/* Whether any triangle is hit. */
 bool masu_trace_any(vec3 origin, vec3 direction, float t_min, float t_max)
 {
     return masu_trace_walk(origin, direction, t_min, t_max, true).t >= 0.0;

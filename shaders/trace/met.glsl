@@ -1,14 +1,14 @@
 /*
- * met.glsl: the surface that a ray has met, of what images and buffers hold of it (specular/ray.glsl). After
- * shared/pack.glsl, specular/ray.glsl and, where there are polygons, trace/scene.glsl and trace/texels.glsl.
+ * met.glsl: the surface at a ray's hit, decoded from images and buffers (specular/ray.glsl). After
+ * shared/pack.glsl, specular/ray.glsl and, with polygons, trace/scene.glsl and trace/texels.glsl.
  */
 #ifndef MASU_TRACE_MET_GLSL
 #define MASU_TRACE_MET_GLSL
 
-/* What a ray has met. */
+/* Surface and normal at a hit. */
 struct met {
     masu_surface surface;
-    vec3 normal; /* unit, towards where the ray comes from */
+    vec3 normal; /* unit, on the side of the ray's origin */
 };
 
 met met_sdf(uvec4 hit)
@@ -36,7 +36,7 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
     vec3 flat_normal = masu_normalize(masu_trace_upright(hit.y, cross(p1 - p0, p2 - p0)), -direction);
     m.normal = masu_normalize(masu_trace_upright(hit.y, normal), flat_normal);
     m.normal = dot(flat_normal, direction) > 0.0 ? -m.normal : m.normal;
-    /* As the raster's: a normal that points away is turned until it does not. */
+    /* As in the raster: a normal that points away is rotated until it does not. */
     float away = dot(m.normal, direction);
     if (away > 0.0) {
         m.normal = masu_normalize(m.normal - away * direction, -direction);
@@ -62,10 +62,10 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
         vec3 w1 = masu_trace_now(hit.y, vec4(p1 - p0, 0.0));
         vec3 w2 = masu_trace_now(hit.y, vec4(p2 - p0, 0.0));
         float across = length(cross(w1, w2)), wide = abs((u1.x * u2.y - u1.y * u2.x) * moved.z * moved.w);
-        float density = masu_sqrt(wide * masu_rcp(across)); /* of texture coordinates per metre */
+        float density = masu_sqrt(wide * masu_rcp(across)); /* texture coordinates per metre */
         float lod = masu_log2(max(width, 1e-9) * density /
                               max(masu_sqrt(abs(dot(flat_normal, direction))), 0.1));
-        /* In a loop: the code for a look would stand here twice. */
+        /* In a loop, so that the lookup is compiled only once. */
         [[dont_unroll]] for (int i = 0; i < 2; i++) {
             uint map = i == 0 ? look.maps.x : look.maps.y;
             if (map != MASU_TRACE_NONE) {

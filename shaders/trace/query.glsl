@@ -1,14 +1,17 @@
 /*
- * query.glsl: rays against the triangles of a scene by ray queries of the device (src/device/ray_query.h), in place
- * of bvh.glsl; the answer is the same. The includer declares
- *   masu_trace_top   the accelerationStructureEXT over the traced instances, each with its mesh's first triangle
+ * query.glsl: rays against the triangles of a scene by ray queries of the device
+ * (src/device/ray_query.h), instead of bvh.glsl, with equal results. The includer declares
+ *   masu_trace_top   the accelerationStructureEXT over the traced instances, each with its mesh's
+ *                    first triangle
  * and may define
- *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d)   false: the ray of direction d in the object's space goes on through this point. Of
- *                                                          meshes that are not said to be opaque
+ *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d)
+ *                    false: the ray of object-space direction d passes through this point. For meshes
+ *                    that are not marked opaque
  *
- * Rays live in world space minus the anchor. A ray that is not finite, has no direction, or begins farther
- * than 1e15 out hits nothing: the specification leaves the first two undefined. A ray that meets more than
- * MASU_TRACE_VISITS points that may be holes has masu_trace_exceeded set, and hits nothing.
+ * Rays are in world space minus the anchor. A ray that is not finite, has no direction, or begins
+ * farther than 1e15 out hits nothing: the specification leaves the first two undefined. A ray with
+ * more than MASU_TRACE_VISITS possibly transparent points sets masu_trace_exceeded, and hits
+ * nothing.
  */
 #ifndef MASU_TRACE_QUERY_GLSL
 #define MASU_TRACE_QUERY_GLSL
@@ -21,9 +24,9 @@
 #endif
 
 struct masu_ray_hit {
-    float t;            /* negative: nothing was hit, and the rest says nothing */
-    uint triangle;      /* of TRACE_TRIANGLES */
-    uint instance;      /* of TRACE_INSTANCES */
+    float t;            /* negative: a miss, and the other members are undefined */
+    uint triangle;      /* index into TRACE_TRIANGLES */
+    uint instance;      /* index into TRACE_INSTANCES */
     vec2 barycentrics;  /* weights of the second and third vertex */
 };
 
@@ -31,7 +34,7 @@ bool masu_trace_exceeded = false;
 
 const float masu_trace_reach = 1e15;
 
-/* The nearest triangle at t_min < t < t_max. */
+/* The closest triangle at t_min < t < t_max. */
 masu_ray_hit masu_trace(vec3 origin, vec3 direction, float t_min, float t_max)
 {
     masu_ray_hit best = masu_ray_hit(-1.0, 0u, 0u, vec2(0.0));

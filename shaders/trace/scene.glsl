@@ -1,16 +1,17 @@
 /*
- * scene.glsl: the buffers that rays are traced through, and what lies behind nodes and triangles there:
- * the blue noise, materials, small pictures of the textures, and where instances were in the previous frame.
+ * scene.glsl: the buffers of ray tracing, and the data that follows nodes and triangles in them:
+ * blue noise, materials, small copies of the textures, and the transforms of the present and the
+ * previous frame.
  *
- *   masu_trace_static[0].w   where the rest begins: a header of where materials, pictures and texels begin; then
- *                            the tile of noise, four words to an element
- *   masu_trace_static[0].z   how many triangles, masu_trace_frame[0].z how many traced instances there are
- *   masu_trace_frame[0].w    of each traced instance six rows: object to world minus anchor, and the same as
- *                            of the previous frame; then, with looks, two rows of each
+ *   masu_trace_static[0].w   where these begin: a header with the offsets of materials, textures and
+ *                            texels; then the noise tile, four values per element
+ *   masu_trace_static[0].z   number of triangles; masu_trace_frame[0].z: number of traced instances
+ *   masu_trace_frame[0].w    six rows per traced instance: object to world minus anchor, now and in
+ *                            the previous frame; then, with looks, two rows per instance
  *
- * Triangles hold the number of their material here, not that of their primitive as in the blob; MASU_TRACE_HOLES
- * with it: of a mask that has a picture; MASU_TRACE_SINGLE: of what is not seen from behind. So a ray asks no material
- * of what is whole.
+ * Triangles hold the number of their material here, not of their primitive as in the blob, with the
+ * flags MASU_TRACE_HOLES: an alpha mask with a texture; MASU_TRACE_SINGLE: single-sided. So a ray
+ * reads no material of opaque, double-sided triangles.
  */
 #ifndef MASU_TRACE_SCENE_GLSL
 #define MASU_TRACE_SCENE_GLSL
@@ -22,7 +23,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE, std430) readonly buffer
     uvec4 masu_trace_static[];
 };
 
-/* Of the tile of noise: noise/sequence.glsl says which word. */
+/* A value of the noise tile; noise/sequence.glsl has the index. */
 uint masu_trace_noise(uint word)
 {
     return masu_trace_static[masu_trace_static[0].w + 1u + (word >> 2)][word & 3u];
@@ -49,19 +50,19 @@ masu_trace_material masu_trace_material_at(uint material)
     return m;
 }
 
-/* Of a vertex: unit normal, object space. */
+/* Normal of a vertex: unit, object space. */
 vec3 masu_trace_vertex_normal(uint vertex)
 {
     return masu_oct_decode(max(unpackSnorm2x16(masu_trace_vertices[vertex].w), vec2(-1.0)));
 }
 
-/* What an image says that a ray has met, which may hold anything, as far as there is such a thing. */
+/* Clamps an instance number from an image, which may hold anything, to the existing ones. */
 uint masu_trace_instance(uint traced)
 {
     return min(traced, max(masu_trace_frame[0].z, 1u) - 1u);
 }
 
-/* Its three vertices, and its material. */
+/* The three vertices of a triangle, and its material. */
 uvec4 masu_trace_triangle(uint triangle)
 {
     uvec4 head = masu_trace_static[0];
@@ -96,7 +97,7 @@ vec3 masu_trace_before(uint traced, vec4 p)
                 dot(masu_trace_row(traced, 5u), p));
 }
 
-/* What stands on a surface: by the cofactors, which are the inverse transposed but for a factor. */
+/* Transforms a normal to world space by the cofactors: the inverse transpose up to a factor. */
 vec3 masu_trace_upright(uint traced, vec3 normal)
 {
     vec3 x = masu_trace_row(traced, 0u).xyz;

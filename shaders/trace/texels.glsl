@@ -1,9 +1,9 @@
 /*
- * texels.glsl: the small pictures of textures that rays look up: bilinear in the mip that fits. After
+ * texels.glsl: lookups in the small textures of ray tracing: bilinear in the closest mip. After
  * trace/scene.glsl.
  *
- * A picture: x first texel, counted in words; y width, height in the upper half; then mip after mip, each half
- * as large. Texels are gamma 2 and alpha, 8 bits each.
+ * A texture's header: x first texel, an index of 32-bit values; y width, height in the upper half.
+ * The mips follow each other, each half as large. Texels are gamma 2 and alpha, 8 bits each.
  */
 #ifndef MASU_TRACE_TEXELS_GLSL
 #define MASU_TRACE_TEXELS_GLSL
@@ -19,19 +19,20 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430) reado
     uvec2 masu_trace_texcoords[];
 };
 
-/* Bit 0: vertices have colours; 1: a second set of coordinates. They lie behind the first (scene_data.h). */
+/* Bit 0: vertices have colours; 1: a second set of coordinates. They follow the first set
+ * (scene_data.h). */
 layout(constant_id = 19) const uint masu_attributes = 0u;
 
-/* The set'th coordinates of a vertex. */
+/* Coordinates of a vertex in a set. */
 vec2 masu_trace_texcoord(uint vertex, uint set)
 {
-    uint colors = masu_trace_static[masu_trace_static[0].w].w; /* from this 32-bit value on */
-    /* The second set is as long as the first, and ends where colours begin. */
+    uint colors = masu_trace_static[masu_trace_static[0].w].w; /* index of the first colour */
+    /* The second set is as long as the first, and ends at the first colour. */
     uint at = masu_attributes >= 2u && set != 0u ? vertex + (colors >> 2) : vertex;
     return uintBitsToFloat(masu_trace_texcoords[at]);
 }
 
-/* Linear, of a place on a triangle. */
+/* Linear colour at a point of a triangle. */
 vec3 masu_trace_color(uvec3 vertices, vec3 weights)
 {
     uint colors = masu_trace_static[masu_trace_static[0].w].w;
@@ -52,9 +53,9 @@ int masu_trace_wrap(int i, int size, uint wrap)
     }
     int period = wrap == 2u ? 2 * size : size;
     int k = i - period * int(floor(float(i) / float(period)));
-    /* The quotient of a whole number of periods may be a little below that. */
+    /* Rounding may put the quotient of a whole number of periods slightly lower. */
     k = k >= period ? k - period : k < 0 ? k + period : k;
-    k = clamp(k, 0, period - 1); /* of places that floats do not hold */
+    k = clamp(k, 0, period - 1); /* for coordinates beyond the precision of floats */
     return k < size ? k : period - 1 - k;
 }
 
@@ -93,7 +94,7 @@ vec4 masu_trace_picture(uint picture, vec2 uv, float lod, uint wrap)
     return sum;
 }
 
-/* The same of what is as wide as 2^width times the picture. */
+/* masu_trace_picture() for a footprint of 2^width times the texture. */
 vec4 masu_trace_sized(uint picture, vec2 uv, float width, uint wrap)
 {
     uint size = masu_trace_static[masu_trace_static[masu_trace_static[0].w].y + picture].y;
@@ -113,8 +114,8 @@ vec2 masu_trace_second_uv(uvec3 vertices, vec2 b)
     return p + (masu_trace_texcoord(vertices.y, 1u) - p) * b.x + (masu_trace_texcoord(vertices.z, 1u) - p) * b.y;
 }
 
-/* Masks: whether the surface is there at all. By the largest mip: what its coverage is, a ray that is one
- * among many finds by itself. */
+/* Alpha masks: whether the surface exists at this point. Reads the largest mip: many rays average
+ * the coverage by themselves. */
 bool masu_trace_there(uvec4 about, vec2 b)
 {
     if ((about.w & MASU_TRACE_HOLES) == 0u) {
@@ -128,10 +129,10 @@ bool masu_trace_there(uvec4 about, vec2 b)
 #endif
 
 #ifdef MASU_TRACE_SIDES
-/* With MASU_TRACE_SIDES a ray asks, of a triangle that may not be there, whether it is.
+/* Whether a triangle with holes or a single side stops a ray (with MASU_TRACE_SIDES).
  *
- * d: of the ray, in the object's space, where what is not seen from behind turns counter-clockwise as in the file,
- * even where an instance mirrors it. */
+ * d: direction of the ray in object space, where the front of a single-sided triangle is
+ * counter-clockwise as in the file, even if an instance mirrors it. */
 bool masu_trace_opaque(uint triangle, vec2 b, vec3 d)
 {
     uvec4 about = masu_trace_static[masu_trace_static[0].x + triangle];
