@@ -1,5 +1,5 @@
-/* gltf_material.c: materials of a glTF file and the names of their pictures; see gltf.h. Over 700
- * lines: a reader for each extension of materials, which share how they read textures.
+/* gltf_material.c: materials of a glTF file and the names of their pictures; see gltf.h.
+ * Over 700 lines: a reader for each extension of materials, which share how they read textures.
  *
  * A mesh has one set of texture coordinates here. It is that of the base colour, else of the first
  * map that there is, with its transform worked in (gltf_mesh.c); and a second one for opaque
