@@ -244,9 +244,10 @@ bench_needs = $(BUILD)/bin/masu $(foreach s,$(BENCH),$(call bench_file,$(s)).mas
 bench_scene = $(BUILD)/bin/masu bench $(call bench_file,$(1)).masu $(BENCH_ARGS) \
     $(BENCH_ARGS_$(subst /,-,$(1)))
 REPORT := $(MADE)/report
-bench: $(bench_needs) ## measure error against run time: build/report/SCENE/index.html; ladder in docs/report: BENCH='engine worlds/city' BENCH_ARGS=
+bench: $(bench_needs) ## measure error against run time: build/report/index.html; ladder in docs/report: BENCH='engine worlds/city' BENCH_ARGS=
 	$(V)mkdir -p $(REPORT)
 	$(V)$(foreach s,$(BENCH),$(call bench_scene,$(s)) --out $(REPORT)/$(subst /,-,$(s)) &&) true
+	$(V)$(BUILD)/bin/masu bench --index $(REPORT)
 ifneq ($(config),lab)
 	$(V)$(foreach s,$(BENCH),tools/bench/keep.sh $(REPORT)/$(subst /,-,$(s)) docs/report/$(subst /,-,$(s)) &&) true
 	$(V)$(BUILD)/bin/masu bench --ladder docs/report/*/ladder.json > docs/report/ladders.txt

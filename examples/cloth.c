@@ -1,6 +1,6 @@
-/* cloth.c SCENE.masu MATERIAL OUT.png: a flag that waves before the camera: a mesh of the host, created once and
- * deformed in each frame. It has shadows, reflections and velocities like any mesh of the scene. The device and the
- * image are those of platform/headless.h, as in minimal.c. */
+/* cloth.c SCENE.masu MATERIAL OUT.png: a flag that waves before the camera: a mesh of the host,
+ * created once and deformed in each frame. It has shadows, reflections and velocities like any
+ * mesh of the scene. The device and the image are those of platform/headless.h, as in minimal.c. */
 #include "headless.h"
 #include "image.h"
 #include "masu.h"
@@ -12,7 +12,15 @@
 #define CHECK(call)                                                                                \
     if (!(call)) return fprintf(stderr, "%s%s\n", error, detail.text), 1
 
-enum { WIDTH = 640, HEIGHT = 360, FRAMES = 30, X = 25, Y = 17, VERTICES = X * Y, TRIANGLES = 2 * (X - 1) * (Y - 1) };
+enum {
+    WIDTH = 640,
+    HEIGHT = 360,
+    FRAMES = 30,
+    X = 25,
+    Y = 17,
+    VERTICES = X * Y,
+    TRIANGLES = 2 * (X - 1) * (Y - 1)
+};
 
 static float positions[VERTICES][3], normals[VERTICES][3];
 static uint32_t indices[TRIANGLES][3];
@@ -33,7 +41,8 @@ static void wave(double time) {
 
 static void weave(void) {
     for (uint32_t q = 0, t = 0; q < (X - 1) * (Y - 1); q++) {
-        uint32_t a = q / (X - 1) * X + q % (X - 1), corner[2][3] = {{a, a + 1, a + X + 1}, {a, a + X + 1, a + X}};
+        uint32_t a = q / (X - 1) * X + q % (X - 1),
+                 corner[2][3] = {{a, a + 1, a + X + 1}, {a, a + X + 1, a + X}};
         for (uint32_t k = 0; k < 2; k++, t++)
             for (uint32_t c = 0; c < 3; c++) indices[t][c] = corner[k][c];
     }
@@ -49,7 +58,8 @@ int main(int argc, char **argv) {
     if (argc != 4) return fprintf(stderr, "usage: cloth SCENE.masu MATERIAL OUT.png\n"), 2;
     CHECK(masu_file_read(argv[1], 1 << 30, &blob, &size, error, room));
     CHECK(masu_headless_open(&(masu_headless_desc){.validate = true}, &host, error, room));
-    CHECK(masu_headless_target_create(&host, WIDTH, HEIGHT, VK_FORMAT_R8G8B8A8_UNORM, false, &image, error, room));
+    CHECK(masu_headless_target_create(&host, WIDTH, HEIGHT, VK_FORMAT_R8G8B8A8_UNORM, false, &image,
+                                      error, room));
     masu_scene scene;
     CHECK(masu_scene_bind(blob, size, &scene, &detail) == MASU_OK);
     masu_desc desc = {MASU_DESC,
@@ -62,11 +72,11 @@ int main(int argc, char **argv) {
                       .output = {WIDTH, HEIGHT},
                       .targets = {.images = &image.image, .count = 1}};
     /* UINT32_MAX for an unknown name: masu_memory_query rejects it. */
-    desc.reserve.meshes[0] =
-        (masu_mesh_kind){.meshes = 1,
-                         .material = (uint32_t)masu_scene_find(&scene, MASU_SCENE_MATERIAL, argv[2]),
-                         .vertices = VERTICES,
-                         .triangles = TRIANGLES};
+    desc.reserve.meshes[0] = (masu_mesh_kind){
+        .meshes = 1,
+        .material = (uint32_t)masu_scene_find(&scene, MASU_SCENE_MATERIAL, argv[2]),
+        .vertices = VERTICES,
+        .triangles = TRIANGLES};
     masu_memory need;
     CHECK(masu_memory_query(&desc, &need, &detail) == MASU_OK);
     void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
@@ -85,20 +95,27 @@ int main(int argc, char **argv) {
                           0, 0, 1, (float)camera.position[2] + ahead * camera.forward[2]};
     weave();
     wave(0);
-    const masu_mesh_data data = {.positions = positions[0], .normals = normals[0], .indices = indices[0],
-                                 .vertex_count = VERTICES, .triangle_count = TRIANGLES};
+    const masu_mesh_data data = {.positions = positions[0],
+                                 .normals = normals[0],
+                                 .indices = indices[0],
+                                 .vertex_count = VERTICES,
+                                 .triangle_count = TRIANGLES};
     CHECK(masu_mesh_create(m, 0, &data, at, &flag, &detail) == MASU_OK);
     for (int i = 0; i < FRAMES; i++) {
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .time = i / 60.0, .time_step = 1 / 60.0f};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .time = i / 60.0,
+                                 .time_step = 1 / 60.0f};
         wave(frame.time);
-        if (i) CHECK(masu_mesh_deform(m, flag, positions[0], normals[0], VERTICES, &detail) == MASU_OK);
+        if (i)
+            CHECK(masu_mesh_deform(m, flag, positions[0], normals[0], VERTICES, &detail) ==
+                  MASU_OK);
         CHECK(masu_frame(m, &frame, &commands, &detail) == MASU_OK);
         CHECK(masu_headless_run(&host, commands.buffer, error, room));
     }
     CHECK(masu_headless_target_read(&host, &image, error, room));
     CHECK(masu_image_save_png(argv[3], image.mapped, WIDTH, HEIGHT, 0, error, room));
-    printf("a flag of %u triangles: %llu bytes host, %llu bytes device; validation %u\n", (unsigned)TRIANGLES,
-           (unsigned long long)need.host_bytes, (unsigned long long)need.device_bytes, host.messages);
+    printf("a flag of %u triangles: %llu bytes host, %llu bytes device; validation %u\n",
+           (unsigned)TRIANGLES, (unsigned long long)need.host_bytes,
+           (unsigned long long)need.device_bytes, host.messages);
     masu_destroy(m);
     masu_headless_target_destroy(&host, &image);
     masu_headless_close(&host);

@@ -69,24 +69,31 @@ static VkResult make_targets(VkDevice device, const masu_split *split, painter *
     return r ? r : vkCreateFramebuffer(device, &frame, NULL, &p->frame);
 }
 
-static VkResult make_pipeline(VkDevice device, const VkShaderModule modules[2], int tested, painter *p) {
+static VkResult make_pipeline(VkDevice device, const VkShaderModule modules[2], int tested,
+                              painter *p) {
     VkPushConstantRange range = {GRAPHICS, 0, sizeof(sheet)};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &range};
     VkResult r = vkCreatePipelineLayout(device, &layout, NULL, &p->layout);
     VkPipelineShaderStageCreateInfo stages[] = {
-        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, .stage = VK_SHADER_STAGE_VERTEX_BIT,
-         .module = modules[0], .pName = "main"},
-        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-         .module = modules[1], .pName = "main"}};
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_VERTEX_BIT,
+         .module = modules[0],
+         .pName = "main"},
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
+         .module = modules[1],
+         .pName = "main"}};
     VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP};
     VkPipelineViewportStateCreateInfo viewport = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1,
+        .scissorCount = 1};
     VkPipelineRasterizationStateCreateInfo raster = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1.0f};
     VkPipelineMultisampleStateCreateInfo samples = {
@@ -98,7 +105,8 @@ static VkResult make_pipeline(VkDevice device, const VkShaderModule modules[2], 
         .depthCompareOp = VK_COMPARE_OP_GREATER}; /* reversed depth: larger is closer */
     VkPipelineColorBlendAttachmentState blend = {.blendEnable = VK_TRUE,
                                                  .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
-                                                 .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+                                                 .dstColorBlendFactor =
+                                                     VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
                                                  .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
                                                  .colorWriteMask = 15};
     VkPipelineColorBlendStateCreateInfo blending = {
@@ -106,9 +114,10 @@ static VkResult make_pipeline(VkDevice device, const VkShaderModule modules[2], 
         .attachmentCount = 1,
         .pAttachments = &blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    VkPipelineDynamicStateCreateInfo dynamics = {.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-                                                 .dynamicStateCount = 2,
-                                                 .pDynamicStates = dynamic};
+    VkPipelineDynamicStateCreateInfo dynamics = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = 2,
+        .pDynamicStates = dynamic};
     VkGraphicsPipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
                                          .stageCount = 2,
                                          .pStages = stages,
@@ -132,7 +141,8 @@ static void destroy_painter(VkDevice device, const painter *p) {
     vkDestroyRenderPass(device, p->pass, NULL);
 }
 
-static VkResult record(VkCommandBuffer to, const painter *p, const masu_split_image *image, const sheet *what) {
+static VkResult record(VkCommandBuffer to, const painter *p, const masu_split_image *image,
+                       const sheet *what) {
     VkRect2D area = {{0, 0}, {image->width, image->height}};
     VkViewport viewport = {0, 0, (float)image->width, (float)image->height, 0, 1};
     VkCommandBufferBeginInfo again = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
@@ -160,7 +170,8 @@ static sheet slanting(const masu_frame_view *view, double distance) {
             s.clip_from_world[i] += view->projection[i / 4 * 4 + k] * view->view[4 * k + i % 4];
     }
     for (int i = 0; i < 3; i++) { /* rows of the view: right, up, backward */
-        double right = (double)view->view[i], up = (double)view->view[4 + i], back = (double)view->view[8 + i];
+        double right = (double)view->view[i], up = (double)view->view[4 + i],
+               back = (double)view->view[8 + i];
         double along = distance * (0.9 * right - 0.3 * back), across = 0.25 * distance * up;
         s.corner[i] = (float)(view->position[i] - distance * back - 0.5 * along - 0.5 * across);
         s.along[i] = (float)along;
@@ -179,7 +190,8 @@ int main(int argc, char **argv) {
     if (argc != 3) return fprintf(stderr, "usage: host_pass SCENE.masu OUT.png\n"), 2;
     CHECK(masu_file_read(argv[1], 1 << 30, &blob, &size, error, room));
     CHECK(masu_headless_open(&(masu_headless_desc){.validate = true}, &host, error, room));
-    CHECK(masu_headless_target_create(&host, WIDTH, HEIGHT, VK_FORMAT_R8G8B8A8_UNORM, false, &image, error, room));
+    CHECK(masu_headless_target_create(&host, WIDTH, HEIGHT, VK_FORMAT_R8G8B8A8_UNORM, false, &image,
+                                      error, room));
     masu_scene scene;
     CHECK(masu_scene_bind(blob, size, &scene, &detail) == MASU_OK);
     masu_desc desc = {MASU_DESC,
@@ -209,16 +221,19 @@ int main(int argc, char **argv) {
     painter painters[2] = {{0}};
     VkShaderModule modules[2];
     VkCommandBuffer own[2];
-    VkShaderModuleCreateInfo code[] = {
-        {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = sizeof masu_spv_host_pass_vert,
-         .pCode = masu_spv_host_pass_vert},
-        {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = sizeof masu_spv_host_pass_frag,
-         .pCode = masu_spv_host_pass_frag}};
-    for (int i = 0; i < 2; i++) CHECK(!vkCreateShaderModule(host.device, &code[i], NULL, &modules[i]));
+    VkShaderModuleCreateInfo code[] = {{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = sizeof masu_spv_host_pass_vert,
+                                        .pCode = masu_spv_host_pass_vert},
+                                       {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = sizeof masu_spv_host_pass_frag,
+                                        .pCode = masu_spv_host_pass_frag}};
+    for (int i = 0; i < 2; i++)
+        CHECK(!vkCreateShaderModule(host.device, &code[i], NULL, &modules[i]));
     for (int i = 0; i < 2; i++) {
         CHECK(masu_split_of(m, points[i], 0, 0, &split[i], &detail) == MASU_OK);
         CHECK(!make_targets(host.device, &split[i], &painters[i]));
-        CHECK(!make_pipeline(host.device, modules, split[i].depth.view != VK_NULL_HANDLE, &painters[i]));
+        CHECK(!make_pipeline(host.device, modules, split[i].depth.view != VK_NULL_HANDLE,
+                             &painters[i]));
     }
     VkCommandPool pool; /* recorded in each frame */
     VkCommandPoolCreateInfo reset = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
@@ -249,9 +264,13 @@ int main(int argc, char **argv) {
         sheet glowing = slanting(&view, sqrt((double)(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])));
         CHECK(!record(own[0], &painters[0], &split[0].color, &glowing));
         CHECK(!record(own[1], &painters[1], &split[1].color, &bar));
-        VkCommandBuffer all[] = {commands.parts[0], own[0], commands.parts[1], own[1], commands.parts[2]};
-        VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 5, .pCommandBuffers = all};
-        CHECK(!vkQueueSubmit(host.queue, 1, &submit, VK_NULL_HANDLE) && !vkQueueWaitIdle(host.queue));
+        VkCommandBuffer all[] = {commands.parts[0], own[0], commands.parts[1], own[1],
+                                 commands.parts[2]};
+        VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                               .commandBufferCount = 5,
+                               .pCommandBuffers = all};
+        CHECK(!vkQueueSubmit(host.queue, 1, &submit, VK_NULL_HANDLE) &&
+              !vkQueueWaitIdle(host.queue));
     }
     CHECK(masu_headless_target_read(&host, &image, error, room));
     CHECK(masu_image_save_png(argv[2], image.mapped, WIDTH, HEIGHT, 0, error, room));

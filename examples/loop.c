@@ -100,7 +100,8 @@ static bool draw(view *v, const char *picture, bool *outdated) {
                              .target = image};
     if (masu_frame(v->m, &frame, &commands, &detail)) return failed(&detail);
     overlay_line line = {8, 8, 2, ""};
-    snprintf(line.text, sizeof line.text, "%uX%u  RUNG %u", w->size.width, w->size.height, commands.rung);
+    snprintf(line.text, sizeof line.text, "%uX%u  RUNG %u", w->size.width, w->size.height,
+             commands.rung);
     v->frame++, v->frames++, v->rungs |= 1u << commands.rung;
     if (!overlay_record(&v->overlay, slot, image, &line, 1, picture[0])) return false;
     got = window_end(w, slot, image, (VkCommandBuffer[2]){commands.buffer, w->commands[slot]}, 2);
@@ -123,7 +124,8 @@ int main(int argc, char **argv) {
     bool quit = false, outdated = false;
     if (argc != 2 && argc != 3) return fprintf(stderr, "usage: loop SCENE.masu [SCRIPT]\n"), 2;
     const char *wish = getenv("LOOP_SURFACE");
-    v.window.srgb = wish && strstr(wish, "srgb"), v.window.unpaced = wish && strstr(wish, "unpaced");
+    v.window.srgb = wish && strstr(wish, "srgb"),
+    v.window.unpaced = wish && strstr(wish, "unpaced");
     bool good = script_open(&v.script, argv[2]) && read_scene(&v, argv[1]) &&
                 window_open(&v.window, "Masu: loop", 640, 360, v.script.text) &&
                 overlay_open(&v.overlay, &v.window) && build(&v);
@@ -131,14 +133,17 @@ int main(int argc, char **argv) {
         char picture[256] = "";
         good = follow_script(&v, v.frames, picture, &quit);
         for (SDL_Event e; SDL_PollEvent(&e);) {
-            quit = quit || e.type == SDL_QUIT || (e.type == SDL_KEYDOWN && e.key.keysym.sym == SDLK_ESCAPE);
-            outdated = outdated || (e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_SIZE_CHANGED);
+            quit = quit || e.type == SDL_QUIT ||
+                   (e.type == SDL_KEYDOWN && e.key.keysym.sym == SDLK_ESCAPE);
+            outdated = outdated || (e.type == SDL_WINDOWEVENT &&
+                                    e.window.event == SDL_WINDOWEVENT_SIZE_CHANGED);
         }
         if (good && outdated) good = follow_window(&v, &outdated);
         if (good && !outdated && !quit) good = draw(&v, picture, &outdated);
     }
-    if (v.m) printf("frames %u rungs 0x%02x resizes %d inits %d format %d validation %d\n", v.frames, v.rungs,
-                    v.resizes, v.inits, (int)v.window.format, v.window.messages);
+    if (v.m)
+        printf("frames %u rungs 0x%02x resizes %d inits %d format %d validation %d\n", v.frames,
+               v.rungs, v.resizes, v.inits, (int)v.window.format, v.window.messages);
     if (v.window.device) vkDeviceWaitIdle(v.window.device);
     masu_destroy(v.m);
     overlay_close(&v.overlay);

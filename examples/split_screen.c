@@ -34,7 +34,8 @@ int main(int argc, char **argv) {
     if (argc != 3) return fprintf(stderr, "usage: split_screen SCENE.masu OUT.png\n"), 2;
     CHECK(masu_file_read(argv[1], 1 << 30, &blob, &size, error, room));
     CHECK(masu_headless_open(&(masu_headless_desc){.validate = true}, &host, error, room));
-    CHECK(masu_headless_target_create(&host, WIDTH, HEIGHT, VK_FORMAT_R8G8B8A8_UNORM, false, &image, error, room));
+    CHECK(masu_headless_target_create(&host, WIDTH, HEIGHT, VK_FORMAT_R8G8B8A8_UNORM, false, &image,
+                                      error, room));
     masu_scene scene;
     CHECK(masu_scene_bind(blob, size, &scene, &detail) == MASU_OK);
     masu_desc desc = {
@@ -74,8 +75,9 @@ int main(int argc, char **argv) {
     }
     CHECK(masu_headless_target_read(&host, &image, error, room));
     CHECK(masu_image_save_png(argv[2], image.mapped, WIDTH, HEIGHT, 0, error, room));
-    printf("two views: %llu bytes host, %llu bytes device; validation %u\n", (unsigned long long)need.host_bytes,
-           (unsigned long long)need.device_bytes, host.messages);
+    printf("two views: %llu bytes host, %llu bytes device; validation %u\n",
+           (unsigned long long)need.host_bytes, (unsigned long long)need.device_bytes,
+           host.messages);
     masu_destroy(m);
     masu_headless_target_destroy(&host, &image);
     masu_headless_close(&host);

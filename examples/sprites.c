@@ -1,6 +1,6 @@
-/* sprites.c SCENE.masu OUT.png: textures that a program makes at run time: puffs of smoke from an atlas, a sign as a
- * decal, the trail of a spark, all in front of the scene's camera. The device and the image are those of
- * platform/headless.h, as in minimal.c. */
+/* sprites.c SCENE.masu OUT.png: textures that a program makes at run time: puffs of smoke from
+ * an atlas, a sign as a decal, the trail of a spark, all in front of the scene's camera. The
+ * device and the image are those of platform/headless.h, as in minimal.c. */
 #include "headless.h"
 #include "image.h"
 #include "masu.h"

@@ -126,6 +126,9 @@ typedef struct masu_deny {
     /* Stores the history of rung.temporal in 16-bit floats, even if the device filters
      * R16G16B16A16_UNORM. Bright colours then have an error of a tenth of an 8-bit step. */
     uint32_t unorm16;
+    /* Upscales to exactly twice the size by the EASU of other ratios, for the same image within an
+     * 8-bit step. Set on GPUs of Arm and Broadcom: the faster form exceeds their registers. */
+    uint32_t easu_twice;
     /* Numbers: largest width and height of the shadow map, most storage buffers per shader stage,
      * and most colour attachments (at least 4), even if the device has more. 0: the limits of the
      * device. */

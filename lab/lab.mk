@@ -27,6 +27,10 @@ gallery: tools ## write build/gallery/index.html: all models of assimp-testmodel
 study isa-table ladders ladder-costs ladder-devices gallery:
 	+$(V)$(lab_make) $@
 
+.PHONY: mutants
+mutants: all $(UNIT_TESTS) $(GPU_TESTS) $(DRIVER_INFO) ## try the mutants of lab/mutants/drawn.tsv (hours): MUTANTS_DIR=/tmp/masu-mutants DRIVERS=system WANTED=60
+	$(V)DRIVERS='$(DRIVERS)' lab/mutants/run.sh $(BUILD)/mutants.tsv
+
 .PHONY: light
 light: tools $(foreach s,alley garden night room small_lamps,$(BUILD)/scenes/$(s).masu) ## measure local lights and the live bounce beside the reference path tracer (an hour)
 	+$(V)$(lab_make) $@
@@ -166,12 +170,13 @@ else
 	done
 endif
 
-# Without MASU_ISA_DRIVERS only the rows of RADV's GPUs change.
-ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(comma)skl$(comma)kbl$(comma)tgl$(comma)a630$(comma)a660)
+# Rows of GPUs whose driver is not in MASU_ISA_DRIVERS do not change.
+isa_with = $(if $(wildcard $(MASU_ISA_DRIVERS)/$(1).so),$(comma)$(2))
+ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(call isa_with,libvulkan_intel,bdw$(comma)skl$(comma)kbl$(comma)tgl)$(call isa_with,libvulkan_freedreno,a630$(comma)a660)$(call isa_with,libvulkan_panfrost,g52$(comma)g610))
 .PHONY: isa-table
 isa-table: $(LAB) $(SCENES)
 	$(V)BUILD=$(BUILD) MADE=$(MADE) lab/isa/table.sh $(ISA_GPUS) > $(BUILD)/isa.csv
-	$(V)test -n '$(MASU_ISA_DRIVERS)' || awk -F, '$$2 ~ /^(skl|kbl|tgl|a630|a660)$$/' lab/notes/isa.csv >> $(BUILD)/isa.csv
+	$(V)awk -F, -v made=,$(ISA_GPUS), 'NR > 1 && !index(made, "," $$2 ",")' lab/notes/isa.csv >> $(BUILD)/isa.csv
 	$(V)mv $(BUILD)/isa.csv lab/notes/isa.csv
 
 .PHONY: ladders ladder-costs ladder-devices

@@ -1,6 +1,7 @@
 /*
- * cascade.frag: of masked polygons that the sun sees, what their alpha leaves; depth is the only
- * output. push.flags: the material's flags, push.layers: the layers of its maps.
+ * cascade.frag: discards the holes of masked polygons in the sun's shadow map; depth is the only
+ * output.
+ * push.flags: the material's flags, push.layers: the layers of its maps.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

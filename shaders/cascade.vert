@@ -1,18 +1,20 @@
 /*
- * cascade.vert: polygons as the sun sees them, for one cascade of the shadow map; a fragment shader
- * have only masks (MASU_TEXTURES). push.cascade is the cascade. Placed relative to the cascade's own centre, not to the
- * eye: while the cascade stays where it is, so does every bit of its texels.
+ * cascade.vert: polygons in light space, for one cascade of the sun's shadow map; there is a
+ * fragment shader only for masks (MASU_TEXTURES). push.cascade is the cascade. Positions are
+ * relative to the cascade's centre, not to the camera: while the cascade does not move, its texels
+ * are bit-identical.
  *
- * A surface that is steep to the sun changes its depth within a texel, and would shadow itself: it is
- * drawn farther from the sun by BIAS times what it changes. By its normal and here, not by the
- * rasteriser's slope bias, which has a bound only with an optional feature: culling by occluders must
- * know how far a mesh may lie behind its occluder (src/frame/occlusion.c), or what is culled would show.
+ * A surface that is steep to the sun changes its depth within a texel and would shadow itself: it
+ * is drawn farther from the sun by BIAS times this change. The bias is computed here from the
+ * normal. The rasteriser's slope bias is bounded only with an optional feature, and occlusion
+ * culling needs the maximum distance of a mesh behind its occluder (src/frame/occlusion.c); else
+ * culled meshes would be visible.
  *
- * The triangles of a smooth mesh lie below its surface, by push.rise at most. Light that grazes the
- * surface is cut off by the triangles beside, in saw-teeth along the terminator: so vertices are
- * drawn below the surface by as much (the terminator of Hanika, "Hacking the Shadow Terminator",
- * Ray Tracing Gems II, 2021, from the caster's side: a shadow map does not know which triangle a
- * receiver is of). Shadows begin that much farther inside at contacts.
+ * The triangles of a smooth mesh are below its surface, by push.rise at most. Grazing light is
+ * blocked by adjacent triangles, which gives a saw-tooth terminator. So vertices are drawn below
+ * the surface by the same amount (the terminator fix of Hanika, "Hacking the Shadow Terminator",
+ * Ray Tracing Gems II, 2021, applied to the caster: a shadow map does not store the receiver's
+ * triangle). Contact shadows begin farther inside by the same distance.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -31,7 +33,7 @@ layout(location = 2) in vec2 texcoord;
 layout(location = 3) out vec2 out_texcoord;
 #endif
 
-/* Depth that a surface of that normal gains or loses along the edge of a texel. */
+/* Depth change of a surface with this normal over the width of a texel. */
 float slope_of(vec3 n, uint k)
 {
     float texel = shadow.origin_hi[k].w;
@@ -58,6 +60,7 @@ void main()
 #ifdef MASU_TEXTURES
     out_texcoord = masu_moved_texcoord(id, texcoord);
 #endif
-    /* What is nearer to the sun than the box is flattened onto its near side, not clipped. */
+    /* Casters between the sun and the cascade's bounds are clamped to the near side, not
+     * clipped. */
     gl_Position = vec4(x, y, min(z, 1.0), 1.0);
 }

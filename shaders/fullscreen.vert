@@ -1,5 +1,5 @@
 /*
- * fullscreen.vert: one triangle over the whole viewport, from the vertex number alone.
+ * fullscreen.vert: one triangle over the whole viewport, generated from the vertex index.
  */
 #version 450
 

@@ -1,8 +1,13 @@
 /*
- * gbuffer.frag: the material of a polygon into the G-buffer. push.material is the draw's material. With
- * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: push.flags
- * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's (with MASU_ATTRIBUTES: from bit 8 on which maps are of the second coordinates); push.mip_bias the bias of mip levels, push.mip_moving (not
- * below 0) what is added to it of what moves, push.nearer the factor on depth of a depth bias, push.detail_* the scale of texture coordinates of all maps but base colour and emissive.
+ * gbuffer.frag: writes the material of a polygon to the G-buffer. push.material is the draw's
+ * material. MASU_MOTION (gbuffer_velocity) adds its velocity, MASU_SURFACE the surface image.
+ * MASU_TEXTURES samples the material's maps:
+ * push.flags: their flags. push.layers: their layers, 8 bits each. push.coat_layer: the layer of
+ * the coat's map; with MASU_ATTRIBUTES bits 8 and up select the maps with the second texture
+ * coordinates.
+ * push.mip_bias: bias of mip levels. push.mip_moving: added for moving surfaces, at least 0.
+ * push.nearer: factor on depth of a depth bias. push.detail_*: scale of texture coordinates of all
+ * maps except base colour and emissive.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -55,7 +60,7 @@ layout(location = 5) in vec4 in_color;
 #ifdef MASU_MOTION
 float mip_bias;
 #define MASU_MAPS_BIAS mip_bias
-const float share_per_pixel = 0.12; /* of push.mip_moving; */
+const float share_per_pixel = 0.12; /* of push.mip_moving */
 const float most_shares = 2.3;
 #endif
 #define MASU_MAPS_LIVE
@@ -69,13 +74,13 @@ layout(location = 1) in vec3 in_rel;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out uint out_normal;
-#ifndef MASU_NO_EMISSION /* attached for emitting materials only: dropped elsewhere */
+#ifndef MASU_NO_EMISSION /* attached only for emitting materials, ignored otherwise */
 layout(location = MASU_HDR_LOCATION) out vec4 out_hdr;
 #endif
 
 #ifdef MASU_SURFACE
 #include "brdf/meso.glsl"
-/* The curves of the material's small relief, which lie behind the materials: their first element. */
+/* Applies the curves of the material's mesoscale relief. They are stored behind the materials. */
 vec3 show_relief(vec3 normal, vec3 n, inout masu_surface s)
 {
     uint at = push.meso;
@@ -115,7 +120,7 @@ void main()
     float speed = length(out_velocity.xy + frame.shifts.zw);
     mip_bias = min(push.mip_bias + push.mip_moving * min(share_per_pixel * speed, most_shares), max(push.mip_bias, 0.0));
 #endif
-    /* Everything that takes derivatives comes before the discard. */
+    /* Derivatives must precede the discard. */
     float alpha = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);
 #ifdef MASU_ATTRIBUTES
     masu_tint(s, in_color.rgb);
@@ -137,17 +142,18 @@ void main()
     if (masu_faded(uvec2(gl_FragCoord.xy))) {
         discard;
     }
-    /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */
+    /* Two-sided: the normal faces the camera for any winding of the triangle. */
     vec3 n = masu_normalize(in_normal, vec3(0.0, 1.0, 0.0));
     bool away = masu_seen_from_below(n, in_rel);
 #ifdef MASU_TEXTURES
     if (masked && !(alpha >= masu_cutoff())) {
         discard;
     }
-    /* A face seen from behind is the same relief from below: all of its normal turns. */
+    /* The back of a face has the same relief from below: the whole normal is negated. */
     bent = away ? -bent : bent;
 #ifdef MASU_SURFACE
-    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n); /* without the relief */
+    /* The normal without the relief. */
+    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n);
     if (coat_bends) {
         even = masu_normalize(masu_seen_normal(away ? -bent_coat : bent_coat, in_rel, n), n);
     }
@@ -168,7 +174,7 @@ void main()
 #endif
 #endif
 #if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
-    /* Where there is so little of a coat that the texel has none, there is the base alone. */
+    /* A coat that rounds to 0 in the texel is ignored. */
     const uint own = MASU_MAP_COAT_SMOOTH | MASU_MAP_BASE_SMOOTH;
     bool two = masu_own_coats && (push.flags & own) != 0u && s.coat * 15.0 >= 0.5;
     bool base_is_even = (push.flags & MASU_MAP_BASE_SMOOTH) != 0u;

@@ -1,13 +1,14 @@
 /*
- * gbuffer.vert: object space to clip space, by way of camera-relative space.
+ * gbuffer.vert: transforms object space to camera-relative space, then to clip space.
  *
- * The eye is subtracted from the instance's translation in two steps (high part, then low part), so
- * that a world a million metres from the origin is as steady as one at the origin.
+ * The camera position is subtracted from the instance's translation in two steps (high part, then
+ * low part), so that a world a million metres from the origin is as stable as one at the origin.
  *
- * With MASU_MOTION (gbuffer_velocity) also to where the vertex was in the previous frame, by the same
- * operations: what stood still gets the same bits twice, and a velocity of exactly 0. With MASU_SKINNED
- * vertices from push.first_skinned on were elsewhere in their mesh, too: skin_previous.comp has found where.
- * With MASU_TEXTURES texture coordinates go along, with MASU_ATTRIBUTES a second set and colours of vertices.
+ * MASU_MOTION (gbuffer_velocity) also transforms to the vertex's previous position, by the same
+ * operations: static vertices give bit-identical results, and a velocity of exactly 0. With
+ * MASU_SKINNED the vertices from push.first_skinned on also have a previous position in their mesh,
+ * from skin_previous.comp. MASU_TEXTURES passes texture coordinates, MASU_ATTRIBUTES a second set
+ * and vertex colours.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -58,7 +59,7 @@ layout(location = 5) out vec4 out_color;
 #define MASU_LOOK_OUT
 #include "shared/look.glsl"
 
-/* Meshes with textures and without have edges in common. */
+/* Meshes with and without textures share edges. */
 invariant gl_Position;
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;

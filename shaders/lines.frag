@@ -1,6 +1,7 @@
 /*
- * lines.frag: a debug line's colour, unless something at least half a percent nearer hides it: what lies on a surface is seen.
- * The depth is of render pixels, and may be shifted by the frame's jitter.
+ * lines.frag: a debug line's colour, unless a surface that is closer by more than half a percent
+ * occludes it: lines on a surface are visible.
+ * The depth has render resolution, and may be shifted by the frame's jitter.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,7 +1,8 @@
 /*
- * lines.vert: six vertices of a parallelogram around a debug line: a pixel wide across, half a pixel longer at each end, so that
- * it covers the middle of one pixel in each column, or row where it is steeper, and of those that it ends in. (Drawn
- * as lines, what is covered differs from device to device.) src/frame/debug_lines.c has clipped it: both ends are in the picture.
+ * lines.vert: six vertices of a parallelogram around a debug line: one pixel wide, and half a pixel
+ * longer at each end. It covers the centre of one pixel in each column, or row if it is steeper,
+ * including those of its ends. (The coverage of line primitives differs between devices.)
+ * src/frame/debug_lines.c has clipped it: both ends are in the image.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -1,7 +1,7 @@
 /*
- * local_shadow.vert: polygons as a punctual light sees them, for one of the shadow faces that a frame renders.
- * push.face is the face. Placed relative to the light, not to the eye: what a face holds does not depend on the
- * camera, so that it can be kept.
+ * local_shadow.vert: polygons in the view of a punctual light, for one of the shadow faces that a
+ * frame renders. push.face is the face. Positions are relative to the light, not to the camera: a
+ * face does not depend on the camera, so it can be cached.
  *
  * Vertices are drawn below smooth surfaces by push.rise at most, as in cascade.vert.
  */

@@ -1,6 +1,7 @@
 /*
- * local_shadow_keep.frag: a texel of a shadow face from where the frame has rendered it to its tile of the atlas.
- * Rounded to the 16 bits of the atlas away from the light, so that a surface is not behind itself.
+ * local_shadow_keep.frag: copies a texel of a rendered shadow face to its tile of the atlas.
+ * Rounded to the 16 bits of the atlas away from the light, so that a surface does not shadow
+ * itself.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,6 +1,6 @@
 /*
- * local_shadow_keep.vert: a square over the tile of each shadow face that the frame renders: six vertices a face.
- * A slot without a face folds to nothing.
+ * local_shadow_keep.vert: a quad over the tile of each shadow face that the frame renders, six
+ * vertices per face. A slot without a face is degenerate.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -1,6 +1,6 @@
 /*
- * occluders.frag: depth of an occluder over a whole texel, its farthest, where the occluder covers
- * all of it. The front of a convex body is, at each point, the farthest of its planes.
+ * occluders.frag: the farthest depth of an occluder over a whole texel, if the occluder covers all
+ * of the texel. The front of a convex body is, at each point, the farthest of its planes.
  */
 #version 440
 
@@ -20,7 +20,7 @@ void main()
         far = min(far, depth - in_planes[i].w);
         near = min(near, depth + in_planes[i].w);
     }
-    /* Nearer than the near plane there is a hole. */
+    /* In front of the near plane the occluder is open. */
     whole = whole && far > 0.0 && near <= 1.0;
     if (!whole) {
         discard;

@@ -1,16 +1,17 @@
 /*
- * occluders.vert: boxes that hide things, for the atlas of occluder depth. An instance is a pair of
- * an occluder and a placed mesh, 18 vertices are the two triangles of each of three faces; faces that
- * look away fold to nothing.
+ * occluders.vert: occluder boxes, for the atlas of occluder depth. An instance is a pair of an
+ * occluder and a placed mesh. 18 vertices are the two triangles of each of three faces; back faces
+ * are degenerate.
  *
- * The atlas may only say that a texel is hidden if all of it is. Sampling its centre is not enough,
- * so each vertex carries what the fragment shader asks of the whole texel: the lines of the box's
- * outline (at most six), and the planes of depth of the faces seen (at most three). The outline is
- * that of the whole box and not of a triangle or a face, so that no texel is lost inside it.
+ * The atlas may mark a texel as hidden only if all of its area is. Sampling its centre is not
+ * enough, so each vertex passes the fragment shader data for a conservative test of the whole
+ * texel: the lines of the box's outline (at most six), and the depth planes of the visible faces
+ * (at most three). The outline is that of the whole box, not of a triangle or a face, so that no
+ * texel is lost inside it.
  *
- * All is homogeneous, (X, Y, W) = w * (texel x, texel y, 1): a line through two points is their cross
- * product whether or not they are in front of the camera, so nothing needs to be clipped here. Every
- * line and plane carries a bound of its rounding: MASU_ROUND times the sum of the absolute terms.
+ * All values are homogeneous, (X, Y, W) = w * (texel x, texel y, 1): a line through two points is
+ * their cross product even behind the camera, so clipping is not needed here. Every line and plane
+ * has a bound of its rounding error: MASU_ROUND times the sum of the absolute terms.
  *
  * push.header: the header of src/frame/occlusion.c, push.view: the view.
  */
@@ -28,7 +29,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_INSTANCES, std430) readonly bu
 };
 
 layout(location = 0) flat out vec4 out_lines[6];  /* inside: dot(xyz, (x, y, 1)) >= w */
-layout(location = 6) flat out vec4 out_planes[3]; /* depth dot(xyz, (x, y, 1)), +- w in a texel */
+layout(location = 6) flat out vec4 out_planes[3]; /* depth dot(xyz, (x, y, 1)), +- w in the texel */
 
 #define MASU_ROUND 7.6e-6 /* 64 * 2^-23 */
 #define MASU_NEVER vec4(0.0, 0.0, -1.0, 0.0)
@@ -55,7 +56,7 @@ void main()
     vec3 low = masu_drawn_vec3(masu_cull_word(MASU_CULL_OCCLUDERS) + 6u * occluder);
     vec3 high = masu_drawn_vec3(masu_cull_word(MASU_CULL_OCCLUDERS) + 6u * occluder + 3u);
 
-    /* The box, relative to the eye: its middle, and half of each edge. */
+    /* Occluder box relative to the camera: its centre, and half of each edge. */
     masu_instance_data m = instances[id];
     vec3 middle = 0.5 * (low + high), size = 0.5 * (high - low);
     vec3 placed = vec3(m.row0.w, m.row1.w, m.row2.w);
@@ -66,7 +67,7 @@ void main()
     axis[1] = vec3(m.row0.y, m.row1.y, m.row2.y) * size.y;
     axis[2] = vec3(m.row0.z, m.row1.z, m.row2.z) * size.z;
 
-    /* Where the mesh itself is cut open by the near plane, it hides nothing. */
+    /* A mesh that the near plane intersects is not an occluder. */
     uint box = masu_cull_word(MASU_CULL_BOXES) + 6u * id;
     vec3 box_middle = (masu_drawn_vec3(box) - frame.eye_hi.xyz) - frame.eye_lo.xyz;
     vec3 beyond = max(abs(box_middle) - masu_drawn_vec3(box + 3u), vec3(0.0));
@@ -93,7 +94,7 @@ void main()
         side[i] = ahead > 0.0 ? 1 : behind > 0.0 ? -1 : 0;
     }
 
-    /* A face in the plane of side s of axis i, its own axes j and k. */
+    /* The face at side s of axis i; j and k are the other two axes. */
     vec3 reach = vec3(atlas.xy + atlas.zw, 1.0); /* the largest texel coordinates */
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -108,13 +109,13 @@ void main()
         float loss = MASU_ROUND * det_abs / abs(det);
         float error = MASU_ROUND * dot(plane_abs, reach) + loss * dot(abs(plane), reach);
         bool seen = side[i] != 0;
-        bool usable = loss < 0.25; /* else the face is seen edge-on */
+        bool usable = loss < 0.25; /* else the face is edge-on */
         out_planes[i] = !seen     ? vec4(0.0, 0.0, 1e30, 0.0)
                         : !usable ? MASU_NEVER
                                   : vec4(plane, margin * (abs(plane.x) + abs(plane.y)) + error);
     }
 
-    /* An edge along axis i is on the outline where one of its two faces is seen. */
+    /* An edge along axis i is on the outline if exactly one of its two faces is visible. */
     for (int l = 0; l < 6; l++) {
         out_lines[l] = vec4(0.0, 0.0, 0.0, -1.0);
     }
@@ -126,7 +127,7 @@ void main()
             vec3 e = p + float(sj) * d[j] + float(sk) * d[k];
             vec3 e_abs = p_abs + d_abs[j] + d_abs[k];
             vec3 line = cross(e, d[i]), line_abs = abs_cross(e_abs, d_abs[i]);
-            /* The box is on one side of the plane through the eye and the edge. */
+            /* All of the box is on one side of the plane through the camera and the edge. */
             float where = dot(line, p);
             float unsure = MASU_ROUND * dot(line_abs, p_abs);
             line = where < 0.0 ? -line : line;

@@ -1,7 +1,8 @@
 /*
- * particles.frag: what a particle adds to the lit picture, and in alpha what it takes of what is behind, as
- * transparents.frag. A round spot: full from the middle to `edge` of the radius, then smoothly less; less, too, where a
- * surface is close behind, or the near plane. The depth is the latest image's, of polygons and the SDF alike.
+ * particles.frag: colour that a particle adds to the lit image; alpha is the share of the
+ * background that it removes, as in transparents.frag. A round sprite: full opacity from the centre
+ * to `edge` of the radius, then a smooth falloff. It also fades near a surface behind and near the
+ * near plane. The depth image has the depths of polygons and the SDF.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -30,7 +31,7 @@ layout(location = 3) flat in vec4 in_more;
 
 layout(location = 0) out vec4 out_color;
 
-/* As that of transparents.frag. */
+/* The limit of transparents.frag. */
 const float brightest = 4096.0;
 
 void main()
@@ -64,7 +65,7 @@ void main()
     float soft = in_more.w;
     if (soft > 0.0) {
         float near = frame.forward.w;
-        /* Of the sky, whose depth is 0, there is no end. */
+        /* The sky, with depth 0, is infinitely far. */
         float room = nearest > masu_tiny ? near / nearest - depth : soft;
         cover *= clamp(min(room, depth - near) / soft, 0.0, 1.0);
     }

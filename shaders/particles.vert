@@ -1,11 +1,13 @@
 /*
- * particles.vert: six vertices of a quad that faces the eye, of MASU_BIND_SPRITES: masu_shared.h has its layout,
- * src/frame/particles.c writes it anew for each frame, sorted. All of a quad has the view depth of its middle. With
- * MASU_SUN_MAP the sun's shadow map is looked at there, too, and with MASU_LIGHTS all points and spots in view: once for
- * each vertex, where each pixel of each of many layers would do so.
+ * particles.vert: six vertices of a quad that faces the camera, from MASU_BIND_SPRITES.
+ * masu_shared.h has the layout; src/frame/particles.c writes the sprites for each frame, sorted.
+ * All of a quad has the view depth of its centre. MASU_SUN_MAP samples the sun's shadow map there,
+ * and MASU_LIGHTS evaluates all visible point and spot lights: once per vertex, instead of per
+ * pixel of each of many layers.
  *
- * Light is scattered evenly by what is thin. Irradiance of a light from l, its mean over all n of max(n.l, 0), is a
- * quarter of what a facing surface gets: a sun of irradiance pi * sun_color leaves a quarter of sun_color.
+ * Thin media scatter light evenly. Irradiance of a light from l, the mean of max(n.l, 0) over all
+ * n, is a quarter of that of a facing surface: a sun of irradiance pi * sun_color gives a quarter
+ * of sun_color.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -38,7 +40,8 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buff
 };
 
 #ifdef MASU_LIGHTS
-/* What a facing white surface would send of all of them; of a rectangle or a capsule as of a sphere that looks as large. */
+/* Radiance of a facing white surface in all lights. Rectangles and capsules are treated as spheres
+ * of the same apparent size. */
 vec3 light_at(vec3 rel)
 {
     vec3 sum = vec3(0.0);
@@ -68,14 +71,16 @@ vec3 light_at(vec3 rel)
 layout(location = 0) out vec2 out_place; /* in the quad, -1..1 */
 layout(location = 1) out vec3 out_rel;
 #ifdef MASU_LIVE_TEXTURES
-layout(location = 2) out vec4 out_color; /* light that it sends; opacity: of trails they change along a segment */
-layout(location = 4) out vec2 out_at;    /* in the cell, 0..1, along a trail beyond */
+layout(location = 2) out vec4 out_color; /* radiance; opacity; not flat, for trails */
+layout(location = 4) out vec2 out_at;    /* in the cell, 0..1; larger along a trail */
 layout(location = 5) flat out vec4 out_cell;
-layout(location = 6) flat out vec4 out_next; /* first corner of the second cell, its share; texture, below 0: of a trail */
+/* First corner of the second cell, its share; texture, below 0 for a trail. */
+layout(location = 6) flat out vec4 out_next;
 #else
-layout(location = 2) flat out vec4 out_color; /* light that it sends; opacity */
+layout(location = 2) flat out vec4 out_color; /* radiance; opacity */
 #endif
-layout(location = 3) flat out vec4 out_more;  /* edge, 1 or 0: it hides or adds; view depth; m over which it is soft */
+/* Edge; 1 blended or 0 additive; view depth; fade distance in m. */
+layout(location = 3) flat out vec4 out_more;
 
 void main()
 {
@@ -107,7 +112,7 @@ void main()
         more.y = next.w;
         place.x = 0.0;
     }
-    /* All of a textured one is inside: full at any distance from the middle. */
+    /* Textured sprites have full opacity at any distance from the centre. */
     place = number > 0.0 ? vec2(0.0) : place;
     out_cell = cell;
 #endif

@@ -1,7 +1,8 @@
 /*
- * pick.frag: whose polygon it is. push.blended: not 0 where it is blended. With MASU_TEXTURES only where the map's alpha
- * leaves it: push.layers are the layers of its maps. push.flags: the material's.
- * Mips are those of what rests: with rung.temporal a hole of something that moves may be a pixel off here.
+ * pick.frag: writes the instance of a polygon. push.blended: not 0 if it is transparent.
+ * MASU_TEXTURES discards pixels by the map's alpha: push.layers are the layers of its maps.
+ * push.flags: the material's. Mip levels are chosen as for stationary surfaces: with rung.temporal
+ * a hole in a moving surface may differ by a pixel here.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,7 +1,7 @@
 /*
- * pick.vert: polygons once more, for 2x2 pixels: those with the one that the host asks for (frame.temporal.w), where
- * the picture has a block of 2x2. So each pixel is the same part of what is drawn as in the picture, and its
- * neighbours, by whose difference textures choose their mips, are the same.
+ * pick.vert: draws polygons again for picking, into a target of 2x2 pixels: the aligned 2x2 block
+ * of the image that contains the requested pixel (frame.temporal.w). So each pixel samples the same
+ * point as in the image, and has the same neighbours for the derivatives that select the mip level.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -32,7 +32,7 @@ void main()
     vec4 clip = frame.clip_from_rel * vec4(rel, 1.0);
     vec2 size = vec2(pc.render_width, pc.render_height);
     uvec2 pixel = uvec2(frame.temporal.w & 0xFFFFu, frame.temporal.w >> 16);
-    /* Pixels from the middle of the block: 1 is the edge of the target. */
+    /* Distance from the centre of the block in pixels: 1 is the edge of the target. */
     vec2 middle = vec2(pixel & ~1u) + 1.0;
     precise vec2 moved = clip.xy * (0.5 * size) + clip.w * (0.5 * size - middle);
     gl_Position = vec4(moved, clip.zw);

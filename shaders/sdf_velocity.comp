@@ -149,11 +149,10 @@ vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
     return followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent), max(1e-3 * pixel, 8.0 * extent)) - p;
 }
 
-/* now: in, the ray through the pixel, of view z 1; out, the visible point relative to the camera.
- * before: the point's previous position relative to the previous camera. */
-void surface_points(uvec2 at, uvec2 size, float depth, inout vec4 now, out vec4 before)
+/* Velocity of the surface at a pixel. depth: above 0. */
+vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
 {
-    vec3 through = now.xyz;
+    vec3 through = masu_pixel_ray(at, size);
     float z = frame.forward.w / depth;
     own_tile = masu_tile_of(at, size);
     if (push.listed != 0u) {
@@ -164,12 +163,7 @@ void surface_points(uvec2 at, uvec2 size, float depth, inout vec4 now, out vec4 
         float z_scale = length(through);
         moved = part_step(at, size, through / z_scale, z * z_scale, z);
     }
-    precise vec3 eye_step = (frame.eye_hi.xyz - previous.eye_hi.xyz) +
-                            (frame.eye_lo.xyz - previous.eye_lo.xyz);
-    precise vec3 rel = through * z;
-    precise vec3 was = rel + (eye_step + moved);
-    now = vec4(rel, 1.0);
-    before = vec4(was, 1.0);
+    return masu_point_velocity(through, z, moved, vec2(size));
 }
 
 void main()
@@ -184,12 +178,11 @@ void main()
         polygon = depth > 0.0 && depth == texelFetch(raster_depth, ivec2(at), 0).r;
 #endif
         if (!polygon) {
-            vec4 now = vec4(masu_pixel_ray(at, size), 0.0); /* the sky is a direction */
-            vec4 before = now;
+            vec4 velocity = masu_sky_velocity(at, size);
             if (depth > 0.0) {
-                surface_points(at, size, depth, now, before);
+                velocity = surface_velocity(at, size, depth);
             }
-            MASU_STORE_HALF(velocity_image, at, masu_velocity(now, before, vec2(size)));
+            MASU_STORE_HALF(velocity_image, at, velocity);
         }
     }
     masu_count_end();

@@ -1,7 +1,7 @@
 /*
- * shadow.comp: how much of the sun each surface sees past the polygons, by the shadow map;
- * multiplied with what the SDF leaves of it where there are SDF shadows (sdf_occlusion.comp, before
- * this). light/sun_map.glsl has the lookup.
+ * shadow.comp: sun visibility of each pixel with respect to polygons, from the shadow map. With SDF
+ * shadows it is multiplied by the SDF's result (sdf_occlusion.comp, which runs before).
+ * light/sun_map.glsl has the lookup.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,24 +1,31 @@
 /*
- * silhouettes.comp: what pixels show in which something of the SDF ends. Compiled by masu-bake with the scene's field.
+ * silhouettes.comp: anti-aliasing of SDF edges. Marches up to three more rays in each pixel that
+ * contains an SDF edge. Compiled by masu-bake with the scene's field.
  *
- * A pixel is one sample. Where it or one of its four neighbours is nearer than the other's surface would be if it went on there, or
- * where two faces meet, a second ray is marched, on the side on which that is; where this one shows something else than the pixel's
- * middle, or something ends on two opposite sides, two more.
- * Of an edge of any direction middle and three rays tell the share to 0.10 of a pixel (root mean square; 0.25 the middle alone).
+ * A pixel's first sample is its centre. If the pixel or one of its four neighbours is closer than
+ * the other's surface would be if it continued, or if two faces join, a second ray is marched on
+ * that side. If its colour differs from the centre's, or there are edges on two opposite sides, two
+ * more are marched.
+ * For edges of any direction, the centre and three rays estimate the coverage with a root mean
+ * square error of 0.10 pixels (0.25 with the centre only).
  *
- * What a ray meets has to be lit, and light.comp is over. Where it meets the plane of its pixel, or of a neighbour on its side, it
- * shows what that one does. Else it shows what the nearest of these does, but for the air, times what light.comp would make of its own
- * surface and normal, divided by what it would make of that one's: of the sun, as far as that pixel is in it, and of what comes from
- * everywhere. So shadows, lamps and reflections are the neighbour's. What no pixel beside shows at all is in the sun.
+ * light.comp has already run, so hits are shaded here. A hit on the plane of its pixel, or of a
+ * neighbour on its side, takes that pixel's colour. Any other hit takes the colour of the pixel
+ * with the closest plane, without fog, scaled by the ratio of two simplified light.comp results:
+ * that of the hit's surface and normal, and that of the pixel's. They contain sunlight, as far as
+ * the pixel is in the sun, and ambient light. So shadows, lamps and reflections are the
+ * neighbour's. A hit without a similar neighbour is fully lit by the sun.
  *
- * What a host has drawn at a split is colour here, not a surface: depths are the scene's.
+ * The host's drawing at a split is part of the colour, not a surface: depths are the scene's.
  *
- * Rays are the workgroup's: pixels are listed, and any invocation marches any ray. In which order they are listed is chance, what
- * is found is not.
+ * The workgroup shares its rays: pixels are listed, and any invocation marches any ray. The order
+ * of the list varies, the result does not.
  *
- * What of the sky or of polygons no pixel beside shows is the middle. push.steps: most samples of a ray, of STEPS at most.
- * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels. push.metered: not 0: the
- * exposure follows the picture. push.peak: the most that is shown, in whites.
+ * Rays that hit the sky or polygons that no neighbour shows take the centre's colour.
+ * push.steps: maximum number of samples of a ray, at most STEPS.
+ * push.listed: 0: all parts; 1: the tiles' lists exist; 2: also the relevant terms of blocks of 4x4
+ * pixels.
+ * push.metered: not 0: automatic exposure. push.peak: the largest output value, relative to white.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -57,7 +64,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buf
 };
 
 #define MASU_RELAXED
-#define MASU_MARCH_STEPS uint(MASU_MARCH_STEPS_MAX) /* meet counts them */
+#define MASU_MARCH_STEPS uint(MASU_MARCH_STEPS_MAX) /* meet has its own limit */
 #define MASU_SDF_ASK
 #define MASU_SDF_NO_FLAT
 #define MASU_SPAN_BEFORE false
@@ -68,20 +75,23 @@ uint own_tile;
 
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 #define RAYS 3
-/* Samples of a ray: one in twenty passes something so closely that it would take more, up to hundreds, and is taken for the middle. With
- * 80 there is 0.67 of FLIP left at 480x270 and 0.72 at 1920x1080, instead of 0.65 and 0.68; without a bound 0.64 and 0.66, for 4 % more
+/* Samples of a ray. One ray in twenty passes so close to a surface that it would need more, up to
+ * hundreds; it takes the centre's colour. With 80 samples the FLIP error is 0.67 at 480x270 and
+ * 0.72 at 1920x1080, with 128 samples 0.65 and 0.68; without a limit 0.64 and 0.66, for 4 % more
  * operations. */
 #define STEPS 128
 
 shared uint listed_count, differ_count;
-shared uint listed[INVOCATIONS];          /* pixels that may have an edge: their number in the group, and from bit 6 on their first place */
-shared uint differ[INVOCATIONS];          /* places in that list: those where the first ray shows something else */
-shared vec3 light[RAYS * INVOCATIONS];    /* what the rays of each show */
+/* Pixels that may have an edge: bits 0 to 5 the index in the group, from bit 6 the first
+ * position. */
+shared uint listed[INVOCATIONS];
+shared uint differ[INVOCATIONS];          /* indices into `listed` where the first ray differs */
+shared vec3 light[RAYS * INVOCATIONS];    /* colour of each pixel's rays */
 
 uvec2 size;
 
-/* Places within a pixel, and the share of its middle: the best three for edges of all directions, of which every second lies along
- * an axis, as most in pictures do. */
+/* Sample positions within a pixel, and the weight of its centre. The best three for edges of all
+ * directions if every second edge is parallel to an axis, as in typical images. */
 const float middle_share = 0.206;
 
 vec2 place_of(uint k)
@@ -95,7 +105,7 @@ uint place_towards(vec2 side)
     return along.x >= max(along.y, along.z) ? 0u : along.y >= along.z ? 1u : 2u;
 }
 
-/* Display light, 0 to 1 of the most that is shown: what is brighter, as without a curve, is no brighter there. */
+/* Display-linear colour, 0 to 1 of the largest output value. Brighter values are clamped. */
 vec3 shown(vec3 hdr)
 {
     float most = max(push.peak, 1.0);
@@ -103,7 +113,7 @@ vec3 shown(vec3 hdr)
     return min(masu_shown(hdr, exposure, most) / most, 1.0);
 }
 
-/* ---- What the pixels show ------------------------------------------------------------------------ */
+/* ---- The G-buffer pixels --------------------------------------------------------------------- */
 
 /* Right, left, below, above. */
 ivec2 beside(int k)
@@ -131,11 +141,11 @@ float raster_at(ivec2 at)
 #endif
 }
 
-/* A pixel of the picture and its surface as a plane: of it 1/z, as depth is, is affine in the picture. */
+/* A pixel and the plane of its surface. 1/z, and so the depth, is affine in screen space. */
 struct pixel {
     float depth; /* 0: the sky */
     bool sdf;
-    vec2 slope; /* a pixel to the right, a pixel down */
+    vec2 slope; /* depth change one pixel to the right, one pixel down */
     vec3 normal;
 };
 
@@ -152,7 +162,8 @@ pixel pixel_at(ivec2 at)
     return p;
 }
 
-/* Whether the depths of a pixel and its neighbours are those of a plane, as most are: half of what would be an edge. */
+/* Whether the depths of a pixel and its neighbours are on a plane, as most are. The tolerance is
+ * half of the threshold for an edge. */
 bool is_flat(ivec2 at)
 {
     ivec2 low = max(at - 1, ivec2(0));
@@ -164,7 +175,7 @@ bool is_flat(ivec2 at)
     return max(bend.x, bend.y) <= 0.25 * frame.up.w / float(size.y) * own;
 }
 
-/* Whether two faces that both can be seen meet within the pixel, or right beside it. */
+/* Whether two visible faces join within the pixel, or right next to it. */
 bool is_crease(pixel own, pixel other, vec2 way)
 {
     vec2 across = other.slope - own.slope;
@@ -174,8 +185,8 @@ bool is_crease(pixel own, pixel other, vec2 way)
     return (own.sdf || other.sdf) && dot(other.normal, own.normal) < 0.8 && along > 0.0 && dot(to, to) < min(along, 0.5);
 }
 
-/* Whether something ends within the pixel or right beside it; `side`: towards which of its sides; between: on both of two that are
- * opposite. */
+/* Whether a surface ends within the pixel or right next to it; `side`: towards which sides;
+ * `between`: on two opposite sides. */
 bool has_edge(ivec2 at, out vec2 side, out bool between)
 {
     side = vec2(0.0);
@@ -184,7 +195,7 @@ bool has_edge(ivec2 at, out vec2 side, out bool between)
         return false;
     }
     pixel own = pixel_at(at);
-    /* Nearer than the other, and than its surface would be, if it went on there, by two pixels' widths. */
+    /* Closer by two pixel widths than the other pixel, and than its surface if it continued. */
     float gap = 1.0 + 4.0 * frame.up.w / float(size.y);
     bool edge = false;
     MASU_LOOP for (int k = 0; k < 4; k++) {
@@ -207,10 +218,11 @@ bool has_edge(ivec2 at, out vec2 side, out bool between)
     return edge;
 }
 
-/* ---- What a ray meets ---------------------------------------------------------------------------- */
+/* ---- Ray intersection ------------------------------------------------------------------------ */
 
-/* Depth of the polygons at a place within a pixel. For their slope is taken what differs least from a neighbour: across their own
- * edge it is another one's. None where it differs much on both sides. */
+/* Depth of the polygons at a position within a pixel. The slope is the smaller difference to a
+ * neighbour, because across their own edge the neighbour is another surface. 0 if both are
+ * large. */
 float raster_within(ivec2 at, vec2 place)
 {
     float depth = raster_at(at);
@@ -228,15 +240,16 @@ float raster_within(ivec2 at, vec2 place)
     return depth;
 }
 
-/* What a ray meets of the SDF. */
+/* Intersection of a ray and the SDF. */
 struct met {
-    float t;        /* -1: nothing */
-    int half_space; /* which one that is; -1: none */
-    bool done;      /* false: there were not samples enough */
+    float t;        /* -1: no hit */
+    int half_space; /* index of the half-space that was hit; -1: none */
+    bool done;      /* false: the ray ran out of samples */
 };
 
-/* r: within the SDF's bounds. Half-spaces end before the cone of the pixel's block does, which is free of the listed parts alone.
- * Where there are no pieces of rays (one part, another march) rays begin at the listed parts' box. */
+/* r: within the SDF's bounds. A half-space may end the ray before the distance that the cone of the
+ * pixel's block guarantees, because the cone is free of the listed parts only. Without spans (one
+ * part, or another march) rays start at the box around the listed parts. */
 met meet(ivec2 at, ray r, bool any_listed)
 {
     uint part;
@@ -269,10 +282,11 @@ met meet(ivec2 at, ray r, bool any_listed)
     return met(listed ? m.t : ends ? end : -1.0, !listed && ends ? int(part) : -1, m.done);
 }
 
-/* ---- Its light ----------------------------------------------------------------------------------- */
+/* ---- Shading of a hit ------------------------------------------------------------------------ */
 
-/* Which of a pixel and its neighbours on the place's sides shows what is met there at `depth` (0: the sky; sdf: of the SDF): the
- * first whose plane is there, else the one whose plane is nearest. off: how far, pixels' widths; 1e30 if none shows its kind. */
+/* Which of a pixel and its neighbours on the position's sides shows the hit at `depth` (0: the sky;
+ * sdf: a hit of the SDF): the first whose plane matches, else the one with the closest plane.
+ * off: distance to the plane in pixel widths; 1e30 if none has the same kind of surface. */
 ivec2 like_at(ivec2 at, vec2 place, float depth, bool sdf, float width, out float off)
 {
     ivec2 like = at;
@@ -296,8 +310,8 @@ ivec2 like_at(ivec2 at, vec2 place, float depth, bool sdf, float width, out floa
     return like;
 }
 
-/* What light.comp makes of a surface without lamps, probes and emission: `around` of what comes
- * from everywhere, `sun` of the sun. */
+/* light.comp's result for a surface without lamps, probes and emission: `around` from ambient
+ * light, `sun` from the sun. */
 void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun)
 {
     around = vec3(0.0);
@@ -315,14 +329,14 @@ void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun
     sun = lit.diffuse + lit.specular;
 }
 
-/* What is met at t, by the light of a pixel; by its own if none shows its kind (!found). In a loop, so that light is compiled
- * once: first what that pixel shows. The emission of that pixel is not known any more: if it emits,
- * it emits what is met. */
+/* Colour of a hit at t in the light of pixel `like`; with full sun if no pixel has the same kind
+ * of surface (!found). The loop, first for that pixel, avoids compiling the lighting twice.
+ * The pixel's emission is not stored: if it emits, the hit's emission is assumed. */
 vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, uint met_normal)
 {
     vec3 hdr = texelFetch(hdr_image, like, 0).rgb;
     vec3 air = vec3(0.0);
-    float left = 1.0; /* of light that comes through the air */
+    float left = 1.0; /* transmittance of the air */
     if (foggy) {
         float far = frame.forward.w * masu_rcp(depth_at(like) * dot(direction, frame.forward.xyz));
         float left_there = masu_fog_left(masu_air_depth(direction, far));
@@ -346,7 +360,7 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
         }
         light_up(s, normal, -direction, around, sun);
         if (first) {
-            /* How much of the sun is seen there: between the pixel's light without and with. All, if it faces away from the sun. */
+            /* Sun visibility, from the pixel's light without and with sun. 1 if it faces away. */
             float more = masu_luminance(sun);
             float without = masu_luminance(around);
             seen = more > 0.05 * without ? clamp((masu_luminance(hdr) - without) / more, 0.0, 1.0) : 1.0;
@@ -354,19 +368,19 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
         }
     }
     vec3 here = around + seen * sun;
-    /* Where no light is known of, as at night by lamps alone, there is nothing to tell one from the other by. */
+    /* Without any light to compare, as at night with lamps only, the ratio is 1. */
     here = found ? hdr * clamp((here + 1e-6) / (there + 1e-6), 0.125, 8.0) : here;
     here += met_surface.emissive;
     return here * left + air * (1.0 - left);
 }
 
-/* What a ray through a place in a pixel shows. */
+/* Colour of a ray through a position in a pixel. */
 vec3 radiance_at(ivec2 at, vec2 place)
 {
     float raster = raster_within(at, place);
     float z_scale;
     ray r = place_ray(vec2(at) + 0.5 + place, size, raster, z_scale);
-    /* Anew for each ray: what rays share would be kept while they are lit, in registers that are not there. */
+    /* Recomputed for each ray: values shared by rays would occupy too many registers in shading. */
     own_tile = masu_tile_of(gl_WorkGroupID.xy * uint(MASU_GROUP), size);
     bool any_listed = push.listed == 0u || masu_use_tile(own_tile, size);
     span_prepare(size);
@@ -391,9 +405,9 @@ vec3 radiance_at(ivec2 at, vec2 place)
     return lit_like(like, off < 1e30, r.direction, m.t, packUnorm4x8(albedo), normal);
 }
 
-/* ---- The workgroup ------------------------------------------------------------------------------- */
+/* ---- The workgroup --------------------------------------------------------------------------- */
 
-/* Marches ray `next` of 3 of an entry of the list. */
+/* Marches ray `next` of 3 for an entry of the list. */
 void march_one(uint entry, uint next)
 {
     uint own = listed[entry] & uint(INVOCATIONS - 1);
@@ -406,11 +420,12 @@ void march_one(uint entry, uint next)
 #error "numbers in a group have 6 bits"
 #endif
 
-/* The word of the invocation's pixel, which is `entry` of the list; INVOCATIONS: it is not in it. */
+/* The texel of the invocation's pixel; entry: its index in the list, INVOCATIONS if not listed. */
 uint march_edges(ivec2 at, uint entry, bool between)
 {
     vec3 middle = vec3(0.0);
-    /* The first ray of each; then two more of those that it shows to have an edge. In a loop, so that a ray is compiled once. */
+    /* First one ray per entry, then two more for entries that differ. The loop avoids compiling a
+     * ray more than once. */
     MASU_LOOP for (uint k = 0u; k < 3u; k++) {
         uint i = gl_LocalInvocationIndex + (max(k, 1u) - 1u) * uint(INVOCATIONS);
         if (i < (k == 0u ? listed_count : 2u * differ_count)) {

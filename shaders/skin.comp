@@ -1,6 +1,6 @@
 /*
- * skin.comp: meshes that joints bend, where their vertices are drawn from: position and normal, as
- * shaders/shared/skinning.glsl has them.
+ * skin.comp: vertex skinning: positions and normals of skinned meshes, as drawn
+ * (shaders/shared/skinning.glsl).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +13,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKINNED, std430) writeonly buf
     uvec4 skinned[];
 };
 
-/* By the cofactor matrix, as polygons.glsl has it; rest's own where that leaves nothing. */
+/* Transforms a normal by the cofactor matrix, as in polygons.glsl; `rest` if the result is 0. */
 vec3 turned(masu_bent bent, vec3 rest)
 {
     vec3 c0 = cross(bent.row1.xyz, bent.row2.xyz);

@@ -1,6 +1,7 @@
 /*
- * skin_previous.comp: where the vertices of skin.comp were in the previous frame, whose matrices lie behind those
- * of this one. Computed again from them, and not what skin.comp has left: no state crosses frames.
+ * skin_previous.comp: previous positions of the vertices of skin.comp, from the previous frame's
+ * matrices, which are stored behind the current ones. Computed again instead of copied: no state
+ * crosses frames.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

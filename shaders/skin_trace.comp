@@ -1,11 +1,13 @@
 /*
- * skin_trace.comp: fits the trees of skinned meshes, which were grown around the rest pose, to where the vertices
- * are now: boxes of triangles, then of nodes over them. A workgroup fits one tree, a sweep over its nodes for each
- * level: in a sweep every node whose children were fitted in an earlier one is fitted. Bounded: a tree has at
- * most MASU_TRACE_LEVELS_MAX levels, and the last sweep is the one that fits the root.
+ * skin_trace.comp: refits the BVHs of skinned meshes, which were built for the rest pose, to the
+ * current vertices: boxes of triangles, then of their nodes. A workgroup refits one tree, with a
+ * sweep over its nodes for each level: a sweep refits every node whose children were refitted in an
+ * earlier one. Bounded: a tree has at most MASU_TRACE_LEVELS_MAX levels, and the sweep that refits
+ * the root is the last.
  *
- * Quantised boxes hold what they stand for, as those of src/scene/trace_tree.c do: positions are rounded outwards
- * by more than the differences here may be off, and what bvh.glsl's own arithmetic may be is its margin.
+ * Quantised boxes contain their content, like those of src/scene/trace_tree.c: positions are
+ * rounded outwards by more than the error of the differences here. The margin of bvh.glsl covers
+ * its own rounding.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -28,7 +30,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_JOINTS, std430) readonly buffe
     uvec4 joints[];
 };
 
-/* Two elements a node: low, and the sweep that has fitted it, 0: none; high. */
+/* Two elements per node: low, and the sweep that has refitted it, 0: none; high. */
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKIN_TREES, std430) coherent buffer Boxes
 {
     uvec4 boxes[];
@@ -61,7 +63,7 @@ masu_box triangle(uint at)
                     clamp(high, vec3(-masu_reach), vec3(masu_reach)));
 }
 
-/* The exponents of the least powers of two of which 254 span the extents. */
+/* Exponents of the smallest powers of two of which 254 cover the extents. */
 uvec3 exponents_of(vec3 extent)
 {
     uvec3 bits = floatBitsToUint(extent * (1.0 / 254.0));
@@ -69,14 +71,14 @@ uvec3 exponents_of(vec3 extent)
     return clamp(e, uvec3(1u), uvec3(170u));
 }
 
-/* Of children: their boxes as bytes. */
+/* Boxes of the children, as bytes. */
 void quantise(masu_box of[4], uint count, masu_box all, inout uvec4 a, inout uvec4 b, inout uvec4 c)
 {
     uvec3 e = exponents_of(all.high - all.low);
     vec3 scale = uintBitsToFloat(e << 23);
     uvec3 lows = uvec3(0u), highs = uvec3(0u);
     for (uint i = 0u; i < 4u; i++) {
-        vec3 low = vec3(255.0), high = vec3(0.0); /* inside out: nothing */
+        vec3 low = vec3(255.0), high = vec3(0.0); /* inverted: empty */
         if (i < count) {
             low = clamp(floor((of[i].low - all.low) / scale - 0.001), vec3(0.0), vec3(255.0));
             high = clamp(ceil((of[i].high - all.low) / scale + 0.001), vec3(0.0), vec3(255.0));
@@ -89,7 +91,7 @@ void quantise(masu_box of[4], uint count, masu_box all, inout uvec4 a, inout uve
     c = uvec4(highs.yz, c.zw);
 }
 
-/* Fits a node if all its children that are nodes have been fitted before this sweep. */
+/* Refits a node if all its children that are nodes have been refitted before this sweep. */
 void fit(uint node, uint first, uint first_box, uint sweep)
 {
     uint at = 1u + uint(MASU_TRACE_NODE_UVEC4) * node, own = 2u * (first_box + node - first);

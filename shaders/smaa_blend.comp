@@ -1,14 +1,14 @@
 /*
- * smaa_blend.comp: SMAA 1x, second and third step: of the listed tiles, what each pixel takes from
- * its neighbours. One workgroup for each tile of 16x16.
+ * smaa_blend.comp: SMAA 1x, second and third step: computes the blend weights of the listed tiles
+ * and blends pixels with their neighbours. One workgroup for each tile of 16x16.
  *
- * The weights of a pixel's edges are needed by it, by the pixel to its left and by the one above
- * it: a group computes those of 17x17 pixels in shared memory. Its invocations share the pixels
- * that have edges among them, a third of a busy tile, instead of waiting for those beside them that
- * have none.
+ * The weights of a pixel's edges are used by the pixel, by its left neighbour and by the one above:
+ * a group computes the weights of 17x17 pixels in shared memory. Only pixels with edges, a third of
+ * a busy tile, are distributed over the invocations, so that none waits for pixels without edges.
  *
- * Push constants: render_* = size of the picture, push.steps = steps of a search, two pixels each,
- * push.diagonal_steps = of a diagonal one, 0: diagonals are not looked for, push.corners not 0: corners are kept.
+ * Push constants: render_* = size of the image, push.steps = steps of a search, two pixels each,
+ * push.diagonal_steps = steps of a diagonal search, 0: no diagonals, push.corners not 0: keeps
+ * corners.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -26,10 +26,10 @@ layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MA
 
 const int side = MASU_TILE + 1;
 const int threads = MASU_GROUP * MASU_GROUP;
-/* Loose, as in smaa_edges.comp. */
+/* Larger than needed, as in smaa_edges.comp. */
 const int rounds = 64;
 shared uint weights[side * side]; /* 4 x 8 bit unorm */
-shared uint tops[side], lefts[side]; /* of each row, a bit for each of 17 pixels */
+shared uint tops[side], lefts[side]; /* per row, a bit for each of 17 pixels */
 shared uint items[side * side];
 shared uint item_count;
 
@@ -47,7 +47,7 @@ void main()
     uvec2 tile = uvec2(number % grid.x, number / grid.x);
     ivec2 first = ivec2(tile) * MASU_TILE;
     ivec2 size = ivec2(pc.render_width, pc.render_height);
-    ivec2 inside = size - first; /* pixels of the picture from the tile's first on */
+    ivec2 inside = size - first; /* pixels of the image from the tile's first pixel on */
 
     for (int n = 0, k = int(t); k < side * side && n < rounds; n++, k += threads) {
         weights[k] = 0u;
@@ -58,9 +58,9 @@ void main()
         uint beside = masu_line_word(0u, int(tile.x) + 1, y);
         tops[t] = word & 0xFFFFu;
         lefts[t] = word >> 16 | (beside & 0x10000u);
-        /* The 16x16 ask of the column beside them for edges to the left, of the row below for
-         * those above. The other one of such a pixel counts only beside it: both may be of a
-         * diagonal. */
+        /* The 16x16 pixels need the next column's edges to the left, and the next row's edges to
+         * the top. The other edge of these pixels is used only together with the needed one,
+         * because both may belong to a diagonal. */
         if (t == 16u) {
             lefts[t] &= tops[t];
         } else {
@@ -100,7 +100,7 @@ void main()
         uint right = weights[p.y * side + next.x] & 0xFF000000u;
         uint below = weights[next.y * side + p.x] & 0x0000FF00u;
         if (((own & 0x00FF00FFu) | right | below) == 0u) {
-            continue; /* it is there already */
+            continue; /* smaa_edges.comp has copied the pixel */
         }
         /* x from the right, y from below, z from the left, w from above */
         vec4 a = unpackUnorm4x8(right >> 24 | below | (own & 0x00FF0000u) | (own & 0xFFu) << 24);

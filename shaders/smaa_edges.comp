@@ -1,14 +1,15 @@
 /*
- * smaa_edges.comp: SMAA 1x, first pass: where the picture has edges, and the tiles of 16x16 that
- * the second pass has to look at. One workgroup for each tile; it copies the picture on the way, so
- * that the second pass writes what it changes and nothing else.
+ * smaa_edges.comp: SMAA 1x, first pass: finds the edges of the image, and lists the tiles of 16x16
+ * pixels for the second pass. One workgroup for each tile. It also copies the image, so that the
+ * second pass writes only changed pixels.
  *
  * Jimenez et al., "SMAA" (Eurographics 2012), section 4.1: a pixel has an edge to the left or above
- * where luma differs by a threshold, unless an edge beside it is more than twice as strong: that
- * one is what is seen. Every word of every tile is written: no edge of a frame before stays.
+ * if luma differs by a threshold, unless an adjacent edge is more than twice as strong and
+ * therefore dominates. All 32-bit values of every tile are written, so no edge of an earlier frame
+ * remains.
  *
- * Push constants: render_* = valid corner of the picture, output_* = tiles, push.threshold = threshold in
- * the steps of masu_smaa_luma.
+ * Push constants: render_* = valid corner of the image, output_* = tiles, push.threshold =
+ * threshold in the steps of masu_smaa_luma.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -31,7 +32,7 @@ layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MA
 /* Luma of the tile, of two pixels to the left and above, of one to the right and below. */
 const int side = MASU_TILE + 3;
 const int threads = MASU_GROUP * MASU_GROUP;
-/* Looser than needed: six rounds, seen as such, are unrolled, which takes lavapipe a third
+/* Larger than needed: the compiler would unroll a loop of six rounds, which takes lavapipe a third
  * longer. */
 const int rounds = 64;
 shared float lumas[side * side];
@@ -70,14 +71,14 @@ void main()
     float threshold = push.threshold;
     for (int k = 0; k < 4; k++) {
         ivec2 pixel = ivec2(gl_LocalInvocationID.xy) + MASU_GROUP * ivec2(k & 1, k >> 1);
-        /* Beyond the picture its outermost pixels go on. */
+        /* Beyond the image its outermost pixels are repeated. */
         ivec2 p = min(pixel, last - first);
         float luma = luma_at(p);
         vec2 beside = vec2(luma_at(p - ivec2(1, 0)), luma_at(p - ivec2(0, 1)));
         vec2 delta = abs(vec2(luma) - beside);
         vec2 ahead = abs(vec2(luma) - vec2(luma_at(p + ivec2(1, 0)), luma_at(p + ivec2(0, 1))));
         bvec2 edge = greaterThanEqual(delta, vec2(threshold));
-        /* What the tile beside may find to be an edge changes pixels of this one too. */
+        /* An edge that the adjacent tile may find also changes pixels of this tile. */
         bool border = (pixel.x == MASU_TILE - 1 && ahead.x >= threshold) ||
                       (pixel.y == MASU_TILE - 1 && ahead.y >= threshold);
         if (!any(edge)) {

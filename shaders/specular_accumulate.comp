@@ -1,6 +1,6 @@
 /*
- * specular_accumulate.comp: for comparison: what all rays of each pixel have brought since the last cut,
- * added up, and how many they were. In floats: after 2^20 frames a sum still takes up one more.
+ * specular_accumulate.comp: for comparison: the sum of the radiance of all rays of each pixel since
+ * the last cut, and their number. In floats: after 2^20 frames a sum can still be incremented.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,17 +1,20 @@
 /*
- * specular_composite.comp: reflections at full size, added to what is lit: radiance from the four traced
- * texels around a pixel, times how much the pixel's surface mirrors of it (the lobe's directional albedo,
- * brdf/tables.glsl: the split sum). light.comp has left out as much of the sky's (masu_kept_mirrors).
+ * specular_composite.comp: adds reflections to the lit image at full size: radiance of the four
+ * traced texels around a pixel, times the directional albedo of the pixel's lobe (brdf/tables.glsl,
+ * the split sum). light.comp has omitted the same share of the sky's reflection
+ * (masu_kept_mirrors).
  *
- * The joint bilateral upsampling: bilinear weights, times how near a texel's surface point lies to the
- * pixel's plane and how alike the normals are. Where all four are something else the nearest to the
- * plane is taken, and where none of them is traced, what light.comp would have taken.
+ * Joint bilateral upsampling: bilinear weights, times the closeness of a texel's surface point to
+ * the pixel's plane and the similarity of the normals. If all four texels are other surfaces, the
+ * one closest to the plane is used; if none is traced, light.comp's value.
  *
- * Of smooth surfaces each pixel has its own mean (MASU_FINE, specular_fine.comp), where there is one. Those that mirror more
- * than they scatter get the velocity of what they mirror, for rung.temporal (MASU_RESOLVED).
+ * Smooth surfaces use a separate mean per pixel (MASU_FINE, specular_fine.comp) if one exists.
+ * Surfaces that mirror more than they scatter get the velocity of the reflection, for rung.temporal
+ * (MASU_RESOLVED).
  *
- * push.cutoff: roughness from which nothing is traced. push.accumulate: 1: the mean of the reference instead, which
- * is weighted already. push.fine: not 0: there are full-resolution history. push.resolved: not 0: the rung has a past.
+ * push.cutoff: roughness from which nothing is traced. push.accumulate: 1: uses the mean of the
+ * reference instead, which is already weighted. push.fine: not 0: there is full-resolution history.
+ * push.resolved: not 0: the rung has temporal upscaling.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -56,15 +59,17 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_HDR + 1, rgba16f) uniform image2D 
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
 
-/* Radiance that a pixel's lobe gathers; a: 0 where no texel knows. most: of any channel of those that count. */
+/* Radiance that a pixel's lobe gathers; a: 0 if no texel is usable. most: brightest channel of
+ * texels with a relevant weight. */
 vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
 {
-    vec2 place = (vec2(at) - 0.5) * 0.5; /* a texel's middle is that of its four pixels */
+    vec2 place = (vec2(at) - 0.5) * 0.5; /* a texel and its four pixels share a centre */
     vec2 corner = floor(place);
     vec2 part = place - corner;
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float z = frame.forward.w * masu_rcp(depth);
-    /* A texel is two pixels wide: what lies off the plane by half of that is another surface. */
+    /* A texel is two pixels wide: a point that is off the plane by half of that is another
+     * surface. */
     float tolerance = z * frame.up.w * 2.0 / float(pc.render_height);
     vec4 sum = vec4(0.0);
     vec4 nearest = vec4(0.0);
@@ -99,10 +104,10 @@ vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
 }
 
 #ifdef MASU_RESOLVED
-const float apart = 0.1;  /* of the nearer depth: a silhouette, as of temporal_find.comp */
-const float least = 0.03; /* pixels: more than what rests there */
+const float apart = 0.1;  /* share of the closer depth: a silhouette, see temporal_find.comp */
+const float least = 0.03; /* pixels: more than the motion of stationary pixels */
 
-/* Whether a pixel's surface ends beside it. The outline moves with what it is the outline of. */
+/* Whether a pixel is at the outline of its surface. The outline moves with its surface. */
 bool ends(ivec2 at, float depth)
 {
     ivec2 last = ivec2(pc.render_width, pc.render_height) - 1;
@@ -113,9 +118,11 @@ bool ends(ivec2 at, float depth)
     return any(greaterThan(abs(beside - depth), apart * max(beside, vec4(depth))));
 }
 
-/* Gives a pixel the velocity of what it mirrors: temporal.comp finds it again where that was seen in the surface, whose depth there
- * is that of the surface's plane. Where what is mirrored rests in the picture and the surface does not, as with the sky, it moves
- * by a little: it would not be held to what is there now. */
+/* Replaces a pixel's velocity by that of its reflection: temporal.comp then reprojects to the
+ * position where the reflection was visible in the surface. The depth is the depth of the
+ * surface's plane there. If the reflection is stationary on screen and the surface is not, as with
+ * the sky, the velocity is set to `least`: a velocity of 0 would disable the clamp to current
+ * colours. */
 void follow(uvec2 at, uvec2 texel, float depth, vec3 n)
 {
     uint age = texelFetch(age_image, ivec2(texel), 0).g;
@@ -156,7 +163,7 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         vec3 v = -masu_normalize(point, frame.forward.xyz);
         masu_bsdf b = masu_bsdf_make(p.surface, n, v);
         vec3 mirrors = p.surface.coat > 0.0 ? vec3(masu_bsdf_coat(b)) : masu_bsdf_specular(b);
-        /* Of smooth surfaces, and where the four pixels are not one surface, the pixel's own mean is all. */
+        /* Smooth surfaces, and texels with several surfaces, use only the pixel's own mean. */
         vec3 own = vec3(0.0);
         float fine = 0.0;
         bool limited = false;
@@ -178,15 +185,16 @@ void pixel(uvec2 at, uvec2 texel, uint number)
             if (!(around.a > 0.0)) {
                 around.rgb = masu_ambient_mirror(reflect(-v, n), roughness);
             }
-            /* What the texels' means do not show even half as bright is noise of few rays; a narrow lobe has
-             * little. */
+            /* A pixel more than twice as bright as the means of the texels is noise of few rays.
+             * Narrow lobes have little noise. */
             float bright = max(own.r, max(own.g, own.b));
             float limit = limited && most > 0.0 ? 2.0 * most + 0.01 : bright;
             light = mix(around.rgb, own * min(1.0, limit / max(bright, 1e-9)), fine);
         }
         mirrored = masu_traced_share(roughness, push.cutoff) * mirrors * light;
 #ifdef MASU_RESOLVED
-        /* By what the surface is, not by what is seen in it: the dark parts of a mirrored column move as the bright ones do. */
+        /* Depends on the surface, not on the reflection: dark parts of a mirrored column move like
+         * the bright ones. */
         vec3 scattered = p.surface.albedo * (1.0 - p.surface.metallic);
         scattered += p.surface.coat > 0.0 ? b.f0 : vec3(0.0);
         if (push.resolved != 0u && whole && fine > 0.5 && !masu_has_emission(p.normal) &&
@@ -195,7 +203,7 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         }
 #endif
     }
-    if (foggy) { /* what it adds itself, light.comp has added */
+    if (foggy) { /* light.comp has added the fog's own light */
         vec3 direction = masu_normalize(point, frame.forward.xyz);
         mirrored *= masu_fog_left(masu_air_depth(direction, length(point)));
     }

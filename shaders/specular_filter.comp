@@ -65,7 +65,7 @@ vec2 spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
         squares += y * y;
         count += 1.0;
     }
-    /* One neighbour or two do not tell what is bright here. */
+    /* One or two neighbours are too few for a limit. */
     float mean = sum / max(count, 1.0);
     return vec2(count > 2.0 ? mean : 65504.0, masu_sqrt(squares / max(count, 1.0) - mean * mean));
 }
@@ -117,7 +117,8 @@ void main()
                     }
                     float share = (float(k) + 0.5) / float(push.taps);
                     float r = max(radius * sqrt(share), 1.0);
-                    float angle = 6.2831853 * fract(0.38196601 * float(k) + turn) - 3.1415927; /* sines are promised up to pi */
+                    /* Vulkan specifies the precision of sin and cos only within -pi..pi. */
+                    float angle = 6.2831853 * fract(0.38196601 * float(k) + turn) - 3.1415927;
                     ivec2 at = ivec2(texel) + ivec2(round(r * vec2(cos(angle), sin(angle))));
                     if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
                         continue;

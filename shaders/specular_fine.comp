@@ -1,18 +1,19 @@
 /*
- * specular_fine.comp: what smooth surfaces mirror is as sharp as the picture, and a mean over a texel's 2x2
- * pixels blurs it; and where the four are not one surface there is nothing a mean over them could be of.
- * Here each has its own: the pixel that the texel has traced in this frame takes its ray in, the others keep
- * what they had, found again where specular_temporal has found the texel's, or else where their own surface
- * was. A mirror's ray has no noise and replaces the mean.
+ * specular_fine.comp: full-resolution mean of reflections. Reflections in smooth surfaces are as
+ * sharp as the image, and a mean over a texel's 2x2 pixels blurs them. If the four pixels show
+ * several surfaces, a common mean has no meaning. Here each pixel has a separate mean: the pixel
+ * that the texel traced in this frame adds its ray, the others keep their history. It is
+ * reprojected to the position that specular_temporal found for the texel, else to that of the
+ * pixel's surface. A mirror's ray has no noise and replaces the mean.
  *
- * A ray counts by what it is worth (specular_rays.comp).
+ * Samples are weighted by their ray weight (specular_rays.comp).
  *
- * In motion the four are up to four frames old, and what is reflected has moved by another amount for each:
- * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3
- * rays. So is one that has just begun, while the scene changes: what has passed by in a mirror has
- * left its colour in the pixels not traced since.
+ * In motion the four means are up to four frames old, and the reflection has moved by a different
+ * amount for each. The mean is then short, shorter for smoother surfaces, and clamped to the
+ * colours of the 3x3 rays. A mean that has just begun in a changing scene is clamped too: an object
+ * that has passed in a mirror remains visible in pixels that have not been traced since.
  *
- * push.frames: how far back the mean reaches, 1/60 s.
+ * push.frames: length of the mean in 1/60 s.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -42,13 +43,14 @@ layout(set = MASU_SET_PASS, binding = 7) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = 8) uniform usampler2D ray_image;
 layout(set = MASU_SET_PASS, binding = 9, rgba32ui) uniform writeonly uimage2D fine_image;
 
-/* Whether the previous frame has kept full-resolution history. A rung without them keeps the rest of the history alone. */
+/* Whether the previous frame has full-resolution history. A rung without it keeps only the other
+ * history. */
 bool has_old()
 {
     return frame.history.y != 0u && (frame.history.w & uint(MASU_HISTORY_NO_FINE)) == 0u;
 }
 
-/* a: 0: nothing is there. at: pixel of the previous frame. */
+/* a: 0: no history. at: pixel of the previous frame. */
 vec4 old_pixel(ivec2 at, masu_guide g)
 {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.history.yz)))) {
@@ -64,16 +66,16 @@ vec4 old_pixel(ivec2 at, masu_guide g)
     return word == masu_fine_none ? vec4(0.0) : vec4(masu_unpack_fine(word), 1.0);
 }
 
-/* Whether a texel of the previous frame can have held a surface of this normal: if it was not one surface, there is
- * no telling. */
+/* Whether a texel of the previous frame can have shown a surface with this normal. A texel with
+ * several surfaces can have shown any. */
 bool was_it(ivec2 texel, vec3 normal)
 {
     masu_guide o = masu_unpack_guide(texelFetch(old_guide_image, texel, 0).rg);
     return o.there && (o.mixed || dot(o.normal, normal) > 0.8);
 }
 
-/* Where a pixel's own surface was, whatever the texel there stood for: to the nearest pixel, since between two
- * lies the outline. */
+/* History at the previous position of the pixel's own surface, whatever the texel there stood for.
+ * Uses the nearest pixel, because between two pixels is the outline. */
 vec4 own_way(uvec2 pixel)
 {
     if (!has_old() || frame.history.yz != uvec2(pc.render_width, pc.render_height) ||
@@ -111,10 +113,10 @@ vec4 look(uvec2 pixel, vec2 moved, masu_guide g)
     return sum.a > 0.2 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
 }
 
-/* What few rays meet and much light comes from is noise in so few of them: no brighter than what the means
- * of the eight texels around show, nor than four times what the pixel has. A highlight that is there comes up
- * all the same, by four times with each ray. x: the mean of the eight; y: what they show at most. Once for a texel and
- * before its pixels, whose registers it would take. */
+/* Limit for fireflies: few rays hit bright light, which is noise in so short a mean. A sample is
+ * limited by the means of the eight texels around, and by four times the pixel's mean. A real
+ * highlight still appears, growing by a factor of four with each ray. x: the mean of the eight; y:
+ * their upper bound. Computed once per texel before its pixels, to save registers. */
 vec2 sparks_around(ivec2 texel)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
@@ -148,7 +150,7 @@ vec3 without_sparks(vec3 color, vec4 old, vec2 around)
     return masu_no_brighter(color, most);
 }
 
-/* Of the rays of the 3x3 texels. */
+/* Colour bounds of the rays of the 3x3 texels. */
 void colors_around(ivec2 texel, out vec3 least, out vec3 most)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
@@ -176,10 +178,11 @@ void main()
             uvec2 age = texelFetch(age_image, ivec2(texel), 0).rg;
             bool known = frame.history.y != 0u && age.y != masu_unmoved;
             vec2 moved = known ? unpackHalf2x16(age.y) : vec2(0.0);
-            /* Each fourth frame is this pixel's. What it has from before the first round is of another
-             * surface, maybe. */
+            /* This pixel is traced in each fourth frame. Its history from before the first round
+             * may belong to another surface. */
             float own = max(floor((masu_age_frames(age.x) - 0.9) * 0.25), 0.0);
-            /* A ray a quarter as often: the mean of a surface that has no other reaches back four times as far. */
+            /* A pixel has a ray in every fourth frame only: if it has no other mean, its own is
+             * four times as long. */
             float reach = max(float(push.frames) * (g.mixed ? 1.0 : 0.25), 1.0);
             bool moving = masu_is_moving(moved);
             bool young = masu_age_frames(age.x) < 8.0;
@@ -196,8 +199,9 @@ void main()
             vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), masu_turn(frame.history.x));
             float dither = noise.x;
             if (!(g.roughness > masu_mirror_roughness)) {
-                /* The same ray each time: rounded by another dither it would flicker, up to 6 of 255 in a dark channel
-                 * beside a bright one, and no mean would make up for it. */
+                /* Each frame traces the same ray. With a changing dither the rounding would
+                 * flicker, up to 6 of 255 in a dark channel next to a bright one, and no mean would
+                 * remove it. */
                 share = 1.0;
                 dither = 0.5;
             }

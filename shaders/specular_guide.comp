@@ -1,10 +1,10 @@
 /*
- * specular_guide.comp: which pixel of each 2x2 is traced in this frame, and the list of 8x8 texels in
- * which any is. Only surfaces smoother than push.cutoff are; the passes behind this one run for the listed
- * tiles alone.
+ * specular_guide.comp: selects the pixel of each 2x2 that is traced in this frame, and lists the
+ * tiles of 8x8 texels with traced pixels. Only surfaces smoother than push.cutoff are traced. The
+ * following passes run only for the listed tiles.
  *
- * A pixel that is not glossy is replaced by another one of its 2x2 that is: a rod one pixel wide would
- * else be traced in every fourth frame only.
+ * A pixel that is not glossy is replaced by a glossy one of its 2x2: otherwise a rod one pixel wide
+ * would be traced in every fourth frame only.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -20,7 +20,7 @@
 #define MASU_SPECULAR_TILES_ACCESS
 #include "specular/tiles.glsl"
 
-/* Cosine of the angle by which normals within a texel may differ. */
+/* Cosine of the largest angle between normals within a texel. */
 const float alike = 0.98;
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
@@ -30,9 +30,8 @@ layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE, rg32ui) uniform writeo
 
 shared uint any_glossy;
 
-/* Whether any other of the four pixels is another surface than the one that the texel stands for, or leans so
- * much that it mirrors something else: a mean over the texel would be one of different things, and begin anew
- * with each turn. */
+/* Whether another of the four pixels shows a different surface, or a normal so different that it
+ * reflects something else. A mean over the texel would mix them, and restarts in each frame. */
 bool is_mixed(uvec2 texel, uint pixel, masu_pixel p, uvec2 at)
 {
     uvec2 last = uvec2(pc.render_width, pc.render_height) - 1u;

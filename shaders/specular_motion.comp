@@ -1,9 +1,9 @@
 /*
- * specular_motion.comp: where in the previous frame the same thing was seen in the same mirror, for
- * specular_temporal: a mirror shows a virtual point as far behind its surface as what is mirrored lies before
- * it. That moves as the mirror image of the thing, and with the mirror.
+ * specular_motion.comp: motion of reflections since the previous frame, for specular_temporal. A
+ * mirror shows a virtual point as far behind its surface as the reflected point is in front. The
+ * virtual point moves like the mirror image of the object, and with the mirror.
  *
- * A pass of its own: in specular_shade it would take 40 registers that are wanted there.
+ * A separate pass: in specular_shade it would need 40 additional registers.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -14,7 +14,7 @@
 #include "shared/pack.glsl"
 #include "shared/store.glsl"
 #include "shared/motion.glsl"
-#ifndef MASU_NO_POLYGONS /* rays meet nothing but the SDF */
+#ifndef MASU_NO_POLYGONS /* rays can hit only the SDF */
 #define MASU_TRACE_POLYGONS
 #include "trace/scene.glsl"
 #endif
@@ -30,7 +30,7 @@ layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D hit_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image;
 layout(set = MASU_SET_PASS, binding = 3, r32ui) uniform writeonly uimage2D motion_image;
 
-/* Where what was met was in the previous frame, minus where it is. */
+/* Position of the hit point in the previous frame, minus its current position. */
 vec3 met_before(uvec4 hit)
 {
 #ifdef MASU_TRACE_POLYGONS
@@ -47,19 +47,20 @@ vec3 met_before(uvec4 hit)
     return masu_unpack_sdf_motion(hit.y);
 }
 
-/* By how many pixels a point behind the mirror has moved: `off` further along the line of sight, `thing`
- * minus where it is in the previous frame. */
+/* Motion in pixels of a point behind the mirror: `off` further along the line of sight; `thing`:
+ * its previous position minus its current one. */
 vec4 image_moved(vec3 point, vec3 along, float off, vec3 thing, vec3 eyes, vec2 size)
 {
     vec3 behind = point + along * off;
     return masu_velocity(vec4(behind, 1.0), vec4(behind + thing - eyes, 1.0), size);
 }
 
-/* Pixels by which what is seen in the mirror has moved; all bits: there is no telling.
+/* Motion of the reflection in pixels; masu_unmoved: undefined.
  *
- * A convex mirror shows it nearer to its surface and smaller: 1/image = 1/far + 2/r for the plane that holds
- * view and normal with r cos instead of r, for the one across it r / cos (Coddington's equations). The
- * image moves less by as much, and the rest of its way with the surface. */
+ * A convex mirror shows it closer to its surface and smaller: 1/image = 1/far + 2/r for the plane
+ * that contains view and normal with r cos instead of r, for the perpendicular plane r / cos
+ * (Coddington's equations). The image's own motion is reduced by the same factor; the remainder
+ * follows the surface. */
 uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
 {
     uvec2 at = masu_guide_place(texel, g.pixel, push.traced_size);
@@ -68,7 +69,7 @@ uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
     if (!(moved.w > 0.0)) {
         return masu_unmoved;
     }
-    /* Where the surface was, seen from the eye of then and of now. */
+    /* Previous position of the surface, relative to the previous and to the current camera. */
     vec3 eyes = (previous.eye_hi.xyz - frame.eye_hi.xyz) + (previous.eye_lo.xyz - frame.eye_lo.xyz);
     float z = frame.forward.w * masu_rcp(g.depth) * (1.0 + moved.z);
     vec2 ndc = (vec2(at) + 0.5 + moved.xy) / size * 2.0 - 1.0 + previous.jitter.xy;

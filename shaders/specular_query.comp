@@ -1,6 +1,7 @@
 /*
- * specular_query.comp: specular_trace.comp by ray queries of the device (trace/query.glsl). With MASU_TRACE_SIDES
- * rays go through what is not seen from behind, with MASU_TRACE_TEXTURES also through the holes of masks.
+ * specular_query.comp: specular_trace.comp with the device's ray queries (trace/query.glsl). With
+ * MASU_TRACE_SIDES rays pass through back faces of single-sided polygons, with MASU_TRACE_TEXTURES
+ * also through the holes of masks.
  */
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,18 +1,19 @@
 /*
- * specular_rays.comp: one ray for each traced texel, drawn where its pixel's lobe of visible normals
- * reflects to (brdf/vndf.glsl), by noise that is blue over texels and even over frames
- * (noise/sequence.glsl).
+ * specular_rays.comp: generates one ray for each traced texel: the reflection at a normal that is
+ * sampled from the visible normals of its pixel's lobe (brdf/vndf.glsl), with noise that is blue
+ * over texels and evenly distributed over frames (noise/sequence.glsl).
  *
- * What a ray brings is multiplied by the albedo of its lobe (specular_composite), as if all rays were worth the same. They are
- * not: of a wet street that is seen at a low angle those that go on along it are mirrored by several times as much as those that
- * go up to the sky. So means over frames weigh each ray by what it is worth to its own lobe; one that would go below the surface
- * is worth little.
+ * specular_composite multiplies radiance by the albedo of the lobe, as if all rays had the same
+ * weight. They do not: on a wet street at a low angle, rays along the street are reflected several
+ * times as strongly as rays up to the sky. So means over frames use a ray weight relative to the
+ * ray's own lobe. A ray that would go below the surface has a small weight.
  *
- * With debug.reference (push.accumulate) also what the ray's radiance is worth, by the lobes themselves and not
- * their albedo: a surface with a coat has two, which take turns; the density is that of both. (Of the same
- * sequence another number must not choose: its steps are those of the first, and each lobe would be asked
- * in one and the same half of its directions.) A mirror's rays all go one way, which has no density: there
- * each ray stands for its own lobe alone.
+ * With debug.reference (push.accumulate) the ray also stores the weight of its radiance, from the
+ * lobes themselves instead of their albedo. A surface with a coat has two lobes, which alternate;
+ * the density is that of both together. (The lobe must not be chosen by another number of the same
+ * sequence: its steps correlate with the first, so each lobe would be sampled in only one half of
+ * its directions.) A mirror reflects all rays in one direction, which has no density: there each
+ * ray stands only for its lobe.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -46,7 +47,7 @@ uint noise_at(uvec2 texel, uint key)
     return masu_trace_noise(masu_noise_index(texel.x, texel.y, key));
 }
 
-/* What a ray towards l is worth. turn: 0: there is no coat, 1: it is the base's ray, 2: the coat's. */
+/* Ray weight of direction l. turn: 0: there is no coat, 1: it is the base's ray, 2: the coat's. */
 vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
 {
     vec3 base;
@@ -58,7 +59,7 @@ vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
     float pdf = masu_vndf_pdf(v, local, b.alpha);
 #ifdef MASU_SURFACE
     if (turn != 0u) {
-        if (masu_own_coats) { /* f is the ray's own lobe's */
+        if (masu_own_coats) { /* f has the axes of the ray's own lobe */
             masu_axes base_axes = masu_axes_of(b.n);
             pdf = masu_vndf_pdf(masu_axes_in(base_axes, b.v), masu_axes_in(base_axes, l), b.alpha);
             masu_axes coat_axes = masu_axes_of(b.coat_n);
@@ -77,7 +78,8 @@ vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
     return (base * share.x + coat * share.y) / max(3.14159265 * pdf, 1e-9);
 }
 
-/* The same of a lobe of its own, relative to the mean of that: to albedo. Luma; 1 where it is not known. */
+/* Ray weight for the ray's own lobe only, relative to the mean weight, the albedo. Luma; 1 if
+ * undefined. */
 float relative_worth(masu_surface s, masu_bsdf b, masu_vndf_ray r, vec3 l)
 {
     vec3 sum = l + b.v;
@@ -125,8 +127,8 @@ void main()
             masu_vndf_ray r = masu_vndf_reflect(v_local, alpha, u);
             vec3 l = masu_axes_out(f, r.l);
             bool above = r.l.z > 0.0;
-            /* What would go below the surface is mirrored back up; it is worth nothing to the reference,
-             * and to the filters little. */
+            /* A direction below the surface is mirrored up. Its weight is 0 in the reference and
+             * small in the filters. */
             vec3 kept = above ? l : l - 2.0 * dot(l, n) * n;
             ray.x = masu_pack_direction(kept);
             if (push.accumulate != 0u) {

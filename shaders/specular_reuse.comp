@@ -1,19 +1,22 @@
 /*
- * specular_reuse.comp: what the rays of neighbours have met, seen from here. A hit of a neighbour is a sample
- * of this texel's lobe, too, only drawn with another density:
+ * specular_reuse.comp: ray reuse for reflections. A hit of a neighbour's ray is also a sample of
+ * this texel's lobe, drawn with another density:
  *
- *   radiance = sum of w_i L_i / sum of w_i,   w_i = lobe(v, l_i) n.l_i / density_i * dw_here / dw_there
+ *   radiance = sum of w_i L_i / sum of w_i,   w_i = lobe(v, l_i) n.l_i / density_i * dw_here /
+ * dw_there
  *
- * with l_i from here to that hit (Stachowiak, "Stochastic Screen-Space Reflections", SIGGRAPH 2015). The
- * quotient is biased while few rays are in it, and right in the limit; the sum over a fixed count would be
- * right on average and has the noise of all weights. Fresnel's term and shadowing, which lobe(v, l) has beside the
- * density of its rays, are taken from the neighbour: they are stored with its ray (specular/ray.glsl).
+ * with l_i from here to that hit (Stachowiak, "Stochastic Screen-Space Reflections", SIGGRAPH
+ * 2015). The quotient is biased for few rays and correct in the limit. A sum over a fixed number of
+ * rays would be correct on average, but with the noise of all weights. Fresnel and shadowing terms,
+ * which lobe(v, l) has in addition to the density of its rays, are the neighbour's: they are stored
+ * with its ray (specular/ray.glsl).
  *
- * The four texels of a quad take different ones of the spiral's points, and each frame turns it, so that
- * what one texel did not ask its neighbours have. The texel's own ray always counts. What was mirrored back
- * up from below the surface (specular_rays) has no density that means anything, and tells nobody else.
+ * The four texels of a quad use different points of the spiral, which rotates in each frame, so
+ * that neighbours sample what one texel does not. The texel's own ray is always included. A
+ * direction that was mirrored up from below the surface (specular_rays) has no meaningful density
+ * and is not reused.
  *
- * push.taps: neighbours.
+ * push.taps: number of neighbours.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -38,11 +41,12 @@ layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D ray_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D light_image;
 layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D reused_image;
 
-/* Densities below this are no densities: see above. */
+/* Smaller densities are invalid: see above. */
 const float least_density = 1e-4;
-/* One ray that the own lobe would have drawn far more often than the neighbour's is noise; of densities alone. */
+/* Limit of the ratio of densities. One ray that this lobe draws far more often than the neighbour's
+ * lobe would be noise. */
 const float most_weight = 2.0;
-/* Texels, of a picture of any size. */
+/* Largest radius in texels, for any image size. */
 const float widest = 6.0;
 
 struct lobe {
@@ -52,7 +56,7 @@ struct lobe {
     float alpha;
 };
 
-/* lobe * n.l / density of a direction; drawn: of its ray (specular/ray.glsl). */
+/* lobe * n.l / density of a direction; drawn: packed values of its ray (specular/ray.glsl). */
 float weight_of(lobe own, vec3 l, uint drawn)
 {
     float density = masu_drawn_density(drawn);
@@ -64,7 +68,8 @@ float weight_of(lobe own, vec3 l, uint drawn)
     return masu_sane(masu_vndf_density(own.v, h, own.alpha) / density, 0.0, most_weight) * masu_drawn_worth(drawn);
 }
 
-/* rgb radiance times weight, a weight; distance by its reciprocal: the sky's would hide all others. */
+/* Sum of radiance times weight, and of weights in a. The distance is averaged by its reciprocal:
+ * the sky's distance would dominate all others. */
 void add(inout vec4 sum, inout float nearness, float weight, vec4 light)
 {
     sum += weight * vec4(masu_tamed(light.rgb), 1.0);
@@ -113,7 +118,7 @@ void main()
             uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
             vec4 sum = vec4(0.0);
             float nearness = 0.0;
-            /* At least a little, so that there is a result where no other ray fits. */
+            /* A minimum weight, so that there is a result if no other ray fits. */
             add(sum, nearness, max(weight_of(own, masu_unpack_direction(ray.x), ray.y), 1e-3), light);
             float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, own.point);
             float radius = clamp(masu_specular_reach(g, own.point, light.a, curvature), 1.5, widest);

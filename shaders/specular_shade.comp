@@ -1,17 +1,17 @@
 /*
- * specular_shade.comp: the light that comes along the ray of each traced texel: from what it has met, lit as
- * the picture is (light/shade.glsl; the sun past the shadow map, punctual lights, light from everywhere), else the sky.
- * A surface that is seen in another mirrors the sky or the probes itself.
+ * specular_shade.comp: radiance along the ray of each traced texel. Hits are lit like the main view
+ * (light/shade.glsl: the sun with its shadow map, punctual lights, ambient light); misses return
+ * the sky. A surface in a reflection reflects the sky or the probes.
  *
- * The sun's disc is not in it, nor its light in the sky around what mirrors: light.comp adds the sun's
- * highlight exactly.
+ * The sun's disc and the sun's light in the sky around the reflecting surface are not included:
+ * light.comp adds the sun's highlight exactly.
  *
- * push.accumulate: 1: the reference: light is multiplied by what the ray is worth.
+ * push.accumulate: 1: the reference: radiance is multiplied by the ray weight.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_SURFACE /* any of what is met may have a coat */
-#define MASU_LOCAL_SHADOWS_FOUR /* nine texels and MASU_SHELVED: registers */
+#define MASU_SURFACE /* any hit may have a coat */
+#define MASU_LOCAL_SHADOWS_FOUR /* four taps, not nine: fewer registers, as MASU_SHELVED */
 #define MASU_SHELVED
 #include "push/specular_shade.h"
 #include "shared/lights.h"
@@ -22,7 +22,7 @@
 #include "shared/store.glsl"
 #include "light/shade.glsl"
 #include "light/air.glsl"
-#ifndef MASU_NO_POLYGONS /* rays meet nothing but the SDF */
+#ifndef MASU_NO_POLYGONS /* rays can hit only the SDF */
 #define MASU_TRACE_POLYGONS
 #include "trace/scene.glsl"
 #include "trace/texels.glsl"
@@ -57,7 +57,7 @@ layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D hit_image;
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_LIGHT, rgba16f) uniform writeonly image2D light_image;
 
-/* Radiance of what is met at a point relative to the eye. */
+/* Radiance of a hit at a point relative to the camera. */
 vec3 radiance(met m, vec3 rel, vec3 direction)
 {
     if (masu_is_unlit(m.surface)) {
@@ -107,7 +107,7 @@ vec4 light_of(uvec2 texel, masu_guide g)
         met m;
 #ifdef MASU_TRACE_POLYGONS
         if ((hit.y & MASU_HIT_SDF) == 0u) {
-            /* As wide as the lobe has become: half of it lies within its roughness squared. */
+            /* Width of the lobe at the hit: half of the lobe is within its roughness squared. */
             float width = masu_specular_width(g) + t * (g.roughness * g.roughness + frame.up.w * 2.0 / float(pc.render_height));
             m = met_polygon(hit, direction, width);
         } else

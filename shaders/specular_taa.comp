@@ -1,9 +1,10 @@
 /*
- * specular_taa.comp: a second, short temporal accumulation, of what the filters have made. Each frame traces
- * another pixel of a texel's four, and each turns specular_reuse: what of that the longer mean has left
- * is evened out here. The history is held to the colours of the present 3x3 (Karis, "High Quality Temporal
- * Supersampling", SIGGRAPH 2014; their spread instead of their corners: Salvi, "An Excursion in Temporal
- * Supersampling", GDC 2016), which by then have little noise.
+ * specular_taa.comp: a second, short temporal accumulation of the filtered reflections. Each frame
+ * traces another one of a texel's four pixels and rotates the pattern of specular_reuse; this pass
+ * averages the differences that the longer mean has not removed. The history is clamped to the
+ * colours of the current 3x3 texels (Karis, "High Quality Temporal Supersampling", SIGGRAPH 2014;
+ * by their deviation instead of their bounds: Salvi, "An Excursion in Temporal Supersampling", GDC
+ * 2016), which have little noise here.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -27,7 +28,7 @@ layout(set = MASU_SET_PASS, binding = 4, rgba16f) uniform writeonly image2D stea
 const float reach = 8.0; /* 1/60 s */
 const float clamp_width = 1.5; /* deviations */
 
-/* a: 0: nothing is there. */
+/* a: 0: no history. */
 vec4 look(ivec2 texel, vec2 moved)
 {
     vec2 scale = vec2(frame.history.yz) / vec2(pc.render_width, pc.render_height);

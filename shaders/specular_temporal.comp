@@ -1,22 +1,23 @@
 /*
- * specular_temporal.comp: the mean of a texel's light over frames. What was seen there is looked for in the
- * frame before in two places: where the surface was (velocity), and where the thing that it mirrors was seen
- * in it (specular_motion; its mean over 3x3 texels, since each texel's ray has met something else). A mirror
- * needs the second, a rough surface, whose lobe sees a bit of everything, the first.
+ * specular_temporal.comp: temporal accumulation of reflections. Each texel's history is sampled at
+ * two positions of the previous frame: of the surface (velocity), and of the reflected object
+ * (specular_motion; averaged over 3x3 texels, since each texel's ray has a different hit).
+ * Mirrors need the second, rough surfaces with their wide lobes the first.
  *
- * A place counts as far as its surface lies in the plane in which this one was, and leans alike. What is
- * found may be of a surface that saw something else then. The test: means over the same 3x3 texels, then and
- * now, may differ by what the noise of nine rays explains, and what goes beyond makes the history forget
- * (after the weight of "Gran Turismo 7", which has exp(-|Y - mean| / sigma)). A clamp to the present 3x3
- * alone would cut off what few rays meet and much light comes from; it is for what is left, and as wide as
- * the history's own noise.
+ * A history texel is weighted by its distance to the plane of the reprojected surface and by the
+ * similarity of the normals. Its surface may still have reflected something else. Test: the means
+ * of the same 3x3 texels in both frames may differ by the noise of nine rays; a larger difference
+ * shortens the history (after the weight of "Gran Turismo 7", exp(-|Y - mean| / sigma)). Clamping
+ * to the current 3x3 texels only would remove light that few rays hit but that is bright. The clamp
+ * handles the remainder, and is as wide as the history's own noise.
  *
- * Few rays that meet much light are sparks in so short a mean, while the eye moves: of a ray no more counts than what
- * is usual around. Of what rests all counts, and its mean is seen for long enough to be one.
+ * While the camera moves, the mean is short, and few rays that hit bright light are fireflies: each
+ * sample is limited by the usual brightness around it. Stationary pixels have no limit; their
+ * mean is long enough.
  *
- * A ray counts by what it is worth (specular_rays.comp).
+ * Samples are weighted by their ray weight (specular_rays.comp).
  *
- * push.frames: how far back the mean reaches, 1/60 s. push.reused: not 0: specular_reuse has run.
+ * push.frames: length of the mean in 1/60 s. push.reused: not 0: specular_reuse has run.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -41,58 +42,59 @@ layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D velocity_image;
 layout(set = MASU_SET_PASS, binding = 4) uniform usampler2D old_guide_image;
 layout(set = MASU_SET_PASS, binding = 5) uniform sampler2D old_mean_image;
 layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_age_image;
-layout(set = MASU_SET_PASS, binding = 7) uniform sampler2D own_light_image; /* without the neighbours' */
+layout(set = MASU_SET_PASS, binding = 7) uniform sampler2D own_light_image; /* own rays only */
 layout(set = MASU_SET_PASS, binding = 8) uniform usampler2D ray_image;
 layout(set = MASU_SET_PASS, binding = 9, rgba16f) uniform writeonly image2D mean_image;
 layout(set = MASU_SET_PASS, binding = 10, rg32ui) uniform writeonly uimage2D age_image;
 
-/* Deviations of a mean over 3x3 that are still noise, and how fast the history forgets beyond. */
+/* Deviations of a 3x3 mean that are treated as noise, and the rate of forgetting beyond them. */
 const float surprise = 3.0;
 const float forget = 0.5;
-/* Motions of a 3x3 that differ by so many pixels, and by that share of the larger one, are of
- * several things. An outline passes there: so many frames count, of a surface that moves itself
- * more, whose history is held to less anyway. */
+/* If the motions of a 3x3 neighbourhood differ by more than this number of pixels plus this share
+ * of the larger one, they belong to several objects and the texel is at an outline. There the
+ * history has at most `most_outline` frames; more on a moving surface, whose history is limited
+ * anyway. */
 const float apart_pixels = 0.05;
 const float apart_share = 0.5;
 const float most_outline = 3.0;
 const float most_outline_moving = 8.0;
-/* Frames in a mean from which on it takes the texel's own rays alone. What neighbours have met (specular_reuse)
- * is seen from here without asking what lies between, which no number of frames makes right; it is for the first
- * few. */
+/* Number of frames in the mean from which it uses only the texel's own rays. Neighbours' hits
+ * (specular_reuse) are used without a visibility test, an error that averaging does not remove, so
+ * they only serve the first few frames. */
 const float reuse_until = 8.0;
 /* Half the width of the clamp, in deviations. */
 const float clamp_width = 2.0;
-/* Of chroma no deviation is kept: that of luma, so many times. Where few rays meet something red, nine that do not are no reason
- * to forget it. */
+/* No deviation of chroma is stored: that of luma is used, times this factor. If few rays hit
+ * something red, nine rays that do not are no reason to forget it. */
 const float chroma_width = 3.0;
-/* What is usual in motion: the mean over the 3x3 texels of the previous frame, a tenth more, and so many deviations of one ray
- * there. */
+/* Limit of samples in motion: the mean of the 3x3 texels of the previous frame plus a tenth, plus
+ * this number of deviations of one of its rays. */
 const float usual = 5.0;
 const float near_mean = 0.1;
 
-/* The texel in the present frame, and its surface as the previous frame saw it. */
+/* The texel in the current frame, and its surface in the previous frame. */
 struct here {
     ivec2 texel;
     masu_guide g;
     vec3 point;
-    vec3 was;    /* relative to the eye of then */
-    float width; /* of a texel, of the coarser of both frames */
+    vec3 was;    /* relative to the previous camera */
+    float width; /* width of a texel, of the coarser frame */
 };
 
 struct past {
     vec4 mean;
     float age;
-    float weight; /* 0..1: how much of it is of this surface */
-    vec2 place;   /* texels of the previous frame */
-    vec2 luma;    /* past_luma's */
-    float off;    /* distance_of's */
+    float weight; /* 0..1: share of the history that is of this surface */
+    vec2 place;   /* position in texels of the previous frame */
+    vec2 luma;    /* result of past_luma */
+    float off;    /* result of distance_of */
 };
 
 struct present {
     vec3 mean, sigma; /* YCoCg, of 3x3 */
     vec2 motion;   /* the mean; at an outline, the motion of the nearest surface */
     float motions;
-    bool several;  /* things that move apart */
+    bool several;  /* objects with different motions */
     float far;
 };
 
@@ -120,7 +122,8 @@ past look(here h, vec2 moved)
     vec2 scale = vec2(frame.history.yz) / vec2(pc.render_width, pc.render_height);
     p.place = (2.0 * vec2(h.texel) + 1.0 + moved) * scale * 0.5 - 0.5;
     p.place = clamp(masu_sane(vec4(p.place, 0.0, 0.0), -2.0, 32768.0).xy, vec2(-2.0), vec2(32768.0));
-    /* What rests stays where it is to the bit: a thousandth of a texel would blur it in a thousand frames. */
+    /* Stationary texels are read without interpolation: an offset of a thousandth of a texel would
+     * blur them in a thousand frames. */
     vec2 whole = round(p.place);
     if (all(lessThan(abs(p.place - whole), vec2(2e-3)))) {
         p.place = whole;
@@ -149,7 +152,7 @@ past look(here h, vec2 moved)
     float scale_up = masu_rcp(p.weight);
     p.mean *= scale_up;
     p.age *= scale_up;
-    /* A corner of one texel is not much to go by. */
+    /* One corner with a small weight is not a reliable history. */
     p.weight = p.weight > 0.05 ? p.weight : 0.0;
     return p;
 }
@@ -210,8 +213,8 @@ present gather(here h)
     return r;
 }
 
-/* Of the 3x3 texels around a place of the previous frame: x mean luma, y variance of one frame's. Below 0:
- * nothing is there. */
+/* x: mean luma of 3x3 texels around a position of the previous frame; y: variance of one frame's
+ * luma. Below 0: no valid texel. */
 vec2 past_luma(vec2 place)
 {
     ivec2 middle = ivec2(round(place));
@@ -236,19 +239,19 @@ vec2 past_luma(vec2 place)
     return count > 0.0 ? vec2(sum, spread) / count : vec2(-1.0);
 }
 
-/* How far a history is from what is seen, in deviations of the noise in that. */
+/* Difference between history and current luma, in deviations of the current noise. */
 float distance_of(vec2 then, present now)
 {
     if (!(then.x >= 0.0)) {
         return 0.0;
     }
-    /* Nine rays, of which neighbours share some. */
+    /* Nine rays, partly shared by neighbours. */
     float noise = sqrt(max(then.y, 0.0) / 4.0) + 0.02 * then.x + 1e-3;
     return abs(then.x - now.mean.x) / noise;
 }
 
-/* Frames for which a texel that is no one surface has been such a one. Its mean begins anew with each turn, the
- * means of its pixels do not (specular_fine). */
+/* Number of frames for which a texel has contained several surfaces. Its mean restarts in
+ * each frame, because each traces another pixel; the means of its pixels do not (specular_fine). */
 float turns(here h, vec2 moved)
 {
     vec2 scale = vec2(frame.history.yz) / vec2(pc.render_width, pc.render_height);
@@ -291,7 +294,7 @@ void main()
                 h.width *= max(1.0, size.y / float(frame.history.z));
                 bool apart = now.motions > 0.0 && any(greaterThan(abs(now.motion - velocity.xy), vec2(2e-3)));
                 float surface = 1.0;
-                /* Where the surface was, and where what it mirrors was; in a loop: the code would stand here twice. */
+                /* The surface's position, then the reflected object's. A loop: shorter code. */
                 past a;
                 past b;
                 [[dont_unroll]] for (int i = 0; i < 2; i++) {
@@ -327,7 +330,7 @@ void main()
                         bool moves = masu_is_moving(masu_unjittered(velocity.xy, size));
                         frames = min(frames, moves ? most_outline_moving : most_outline);
                     }
-                    /* The clamp, along the line to the present mean. */
+                    /* Clamp along the line to the current mean. */
                     vec3 wide = clamp_width * max(now.sigma, old_sigma * vec3(1.0, chroma_width, chroma_width)) + 1e-3 + 0.02 * now.mean.x;
                     vec3 from = masu_ycocg(history.rgb) - now.mean;
                     vec3 times = abs(from) / wide;
@@ -342,16 +345,17 @@ void main()
                     float share = max(1.0 / (frames + 1.0), masu_time_share(reach));
                     float alone = smoothstep(0.0, reuse_until, frames);
                     color = mix(color, masu_tamed(texelFetch(own_light_image, h.texel, 0).rgb), alone);
-                    /* With neighbours' rays each is weighed already. */
+                    /* Rays reused from neighbours are already weighted. */
                     float worth = masu_drawn_worth(texelFetch(ray_image, h.texel, 0).g);
                     share = masu_worthy_share(share, push.reused != 0u ? mix(1.0, worth, alone) : worth);
                     y = masu_luma(color);
                     vec2 motion = masu_unjittered(mix(now.motion, velocity.xy, surface), size);
                     vec2 luma = mix(b.luma, a.luma, surface);
                     float most_y = max((1.0 + near_mean) * luma.x + usual * masu_sqrt(luma.y), 0.0);
-                    /* Where the history has just been found to be another's (frames) nothing is known of what is usual. */
+                    /* After a rejected history (frames) the usual brightness is not defined. */
                     if (frames > 1.0 && masu_is_moving(motion) && h.g.roughness > masu_mirror_roughness) {
-                        color = masu_no_brighter(color, most_y); /* not y, whose square says what is usual next time */
+                        /* y is not limited: its square determines the next frame's limit. */
+                        color = masu_no_brighter(color, most_y);
                     }
                     mean = mix(history, vec4(color, y * y), share);
                     frames += 1.0;

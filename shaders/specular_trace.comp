@@ -1,5 +1,5 @@
 /*
- * specular_trace.comp: the polygon that the ray of each traced texel meets first (trace/bvh.glsl).
+ * specular_trace.comp: the first polygon that the ray of each traced texel hits (trace/bvh.glsl).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

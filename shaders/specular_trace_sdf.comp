@@ -1,10 +1,11 @@
 /*
- * specular_trace_sdf.comp: what of the SDF the ray of each traced texel meets, where that is nearer than the
- * polygon that it has met. Compiled by masu-bake with the scene's field for scenes with reflections; with
- * MASU_MOTION where the field changes: then also by how much the point has moved since the previous frame, as
- * far as its part moves, turns or grows as a whole (sdf_velocity.comp, step 1).
+ * specular_trace_sdf.comp: intersects the ray of each traced texel with the SDF, up to the polygon
+ * that it has hit. Compiled by masu-bake with the scene's field for scenes with reflections. With
+ * MASU_MOTION, if the field changes, it also writes the motion of the point since the previous
+ * frame, as far as its part is translated, rotated or scaled as a whole (sdf_velocity.comp, step
+ * 1).
  *
- * push.steps: most steps of a ray.
+ * push.steps: maximum number of steps of a ray.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -32,7 +33,7 @@ layout(set = MASU_SET_PASS, binding = 2, rgba32ui) uniform uimage2D hit_image;
 #include "specular/tiles.glsl"
 
 #ifdef MASU_MOTION
-/* Where the root transform of the part has taken p from, minus p. */
+/* Position of p in the previous frame by the root transform of the part, minus p. */
 vec3 moved(uint part, vec3 p)
 {
     vec3 own = masu_sdf_root(part, p, false);
@@ -63,7 +64,8 @@ uvec4 hit_of(reflected m, float t, bool known, inout uint evals)
         n = normal_at(r, t, part);
         evals += 4u;
     }
-    /* A normal that points away, of what the ray has begun inside or grazes, is turned until it does not. */
+    /* A ray that starts inside or grazes a surface may get a normal that points away: tilt it until
+     * it is perpendicular. */
     float away = dot(n, r.direction);
     if (away > 0.0) {
         n = masu_normalize(n - away * r.direction, -r.direction);

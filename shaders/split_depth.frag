@@ -1,6 +1,7 @@
 /*
- * split_depth.frag: depth of what is nearest, polygons and SDF alike, into a depth attachment: the march leaves it in
- * an image that is none, and the host's own commands (masu_desc.split) test against it.
+ * split_depth.frag: copies the depth of polygons and SDF to a depth attachment. The march writes it
+ * to a plain image, but the host's own commands (masu_desc.split) need an attachment for their
+ * depth test.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

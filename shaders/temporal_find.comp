@@ -76,7 +76,7 @@ struct around {
     uint way;    /* offset of the nearest sample, see upscale/found.glsl */
 };
 
-/* Of the 3x3 samples: square-root-encoded colour of 10 bits, as stored (upscale/roots.glsl). */
+/* The 3x3 samples: square-root-encoded colour of 10 bits, as stored (upscale/roots.glsl). */
 struct colors {
     vec3 mean, deviation, least, most;
 };
@@ -111,7 +111,7 @@ vec4 depths_before(vec2 before)
 {
     vec2 size = vec2(frame.temporal.xy);
     vec2 place = (before - 0.5 * previous.jitter.zw) * size;
-    vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* with a size of 1 the same texel four times */
+    vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* size 1: the same texel four times */
     return textureGather(old_depth_image, inside * vec2(push.then_x, push.then_y));
 }
 

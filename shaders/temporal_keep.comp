@@ -1,11 +1,11 @@
 /*
- * temporal_keep.comp: of each pixel the nearest depth of 3x3, for the next frame's temporal_find.comp: a pixel that a
- * silhouette is near belongs to what is in front. If that is a surface one pixel wide, which the
- * next frame's samples may miss, the lowest bits of the depth hold its velocity (masu_thin in
- * upscale/found.glsl): all of it that remains then. A surface that this frame has missed is kept
- * on, a little in front of what the samples show instead.
+ * temporal_keep.comp: stores the nearest depth of the 3x3 samples around each pixel, for the next
+ * frame's temporal_find.comp: a pixel next to a silhouette belongs to the foreground. For a surface
+ * one pixel wide, which the next frame's samples may miss, the lowest bits of the depth are its
+ * velocity (masu_thin in upscale/found.glsl); nothing else of the surface is stored. A surface that
+ * this frame has missed is kept, slightly in front of the samples.
  *
- * Push constants: output_* = the render size; push.depth_*: 1 / size of the image of depths.
+ * Push constants: output_* = the render size; push.depth_*: 1 / size of the depth image.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -27,10 +27,10 @@ layout(set = MASU_SET_PASS, binding = 3, r32f) uniform writeonly image2D kept_im
 const float apart = 0.1; /* of the nearest depth: a silhouette, as in temporal_find.comp */
 const float in_front = 1.2;
 
-/* The bits of masu_thin of the texel `at`; 0 if it is not one pixel wide, or stands still. */
+/* The bits of masu_thin of the texel `at`; 0 if the surface is not one pixel wide, or is static. */
 uint thin_at(ivec2 at, float depth, vec2 size, vec2 texel)
 {
-    /* In the last column and row masu_corner repeats texels across. */
+    /* In the last column and row masu_corner repeats texels. */
     if (any(greaterThanEqual(vec2(at), size - 1.0))) {
         return 0u;
     }

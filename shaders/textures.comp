@@ -1,7 +1,8 @@
 /*
- * textures.comp: copies the texels that the host has written for this frame to live textures. One invocation per texel of
- * the largest rectangle, a layer of workgroups per write. The head of the buffer is in shared/sprites.h. If rectangles of
- * a texture overlap, the later write counts. Texels are stored as they are, through a view of 32-bit integers.
+ * textures.comp: copies the texels that the host has written for this frame to live textures. One
+ * invocation per texel of the largest rectangle, a layer of workgroups per write. The head of the
+ * buffer is in shared/sprites.h. If rectangles of a texture overlap, the later write is kept.
+ * Texels are copied unchanged, through a view of 32-bit integers.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

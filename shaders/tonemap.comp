@@ -1,15 +1,16 @@
 /*
- * tonemap.comp: exposure, a tone curve, encoding. FSR1 wants what comes out here: display-encoded,
- * 0..1.
+ * tonemap.comp: exposure, tone curve and output encoding. The result is display-encoded, 0..1, as
+ * FSR1 requires.
  *
- * shaders/shared/tone.glsl has the curves and encodings; output.glsl says why targets beyond white have
- * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites;
- * push.silhouettes not 0: silhouettes.comp says what some pixels show; push.roots not 0: what follows is rung.temporal, whose
- * samples are roots of display light (upscale/roots.glsl).
+ * shaders/shared/tone.glsl has the curves and encodings; output.glsl describes the encoding of
+ * targets beyond white. Push constants: push.white = white in nits; push.peak = the largest output
+ * value, relative to white; push.silhouettes not 0: silhouettes.comp provides the colour of some
+ * pixels; push.roots not 0: rung.temporal follows, whose samples are square-root-encoded
+ * display-linear colour (upscale/roots.glsl).
  *
- * MASU_LENS: bloom and grading of desc.post. Bloom mixes the scattered light into the radiance; without it, its image
- * is another one and not read. Pixels of silhouettes.comp are after the tone curve: they change by as much as the pixel
- * itself does.
+ * MASU_LENS: bloom and grading of desc.post. Bloom mixes the scattered light into the radiance;
+ * without bloom, a dummy image is bound and not read. Pixels of silhouettes.comp are already
+ * tone-mapped: the effect of the lens on the pixel's own colour is added to them.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -105,7 +106,7 @@ vec3 display_light(ivec2 at)
     return shown(radiance);
 }
 
-/* Roots, or what a display takes: of display light. */
+/* Encodes display-linear colour: by square roots, or for the display. */
 vec3 stored(vec3 y)
 {
     return push.roots != 0u ? sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0)) : masu_encoded(y, push.white);
@@ -134,7 +135,7 @@ void main()
 #elif defined(MASU_DEEP)
         if (push.roots != 0u) {
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(stored(y)), 0.0));
-        } else if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* not through PQ and back */
+        } else if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* without PQ */
             vec3 white = min(y * push.white, 1e4) * (1.0 / 80.0);
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(white), 1.0));
         } else {

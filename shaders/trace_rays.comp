@@ -1,8 +1,8 @@
 /*
- * trace_rays.comp: a list of rays, each by itself: what `masu-lab study rays` measures and tests
- * ask. No pass of a frame. A ray is origin and t_min, direction and t_max; an answer is t,
- * triangle, instance and what was looked at, then weights. push.x rays; push.y 1: any hit will do,
- * and the answer has nothing but t.
+ * trace_rays.comp: traces a list of independent rays, for `masu-lab study rays` and tests. Not a
+ * pass of a frame. A ray is origin and t_min, direction and t_max. A result is t, triangle,
+ * instance and visited nodes, then barycentric weights, tested triangles and record. push.x: number
+ * of rays; push.y 1: any hit, and only t is valid.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

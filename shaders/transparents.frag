@@ -1,36 +1,40 @@
 /*
- * transparents.frag: what a transparent surface adds to the lit picture, and in alpha what it takes of
- * what is behind: blended as source + (1 - alpha) * picture.
+ * transparents.frag: colour that a transparent surface adds to the lit image; alpha is the share of
+ * the background that it removes. Blending: source + (1 - alpha) * destination.
  *
- * What a material's opacity lets through is neither of its colour nor mirrored by it, so the mirror is
- * not made weaker by it: clear glass shines as black glass does, and lets through what it does not
- * mirror. The alpha of a map is another thing: how much of the pixel the surface covers at all.
- * Additive surfaces give what they scatter and take nothing.
+ * Light that passes because of the material's opacity is neither scattered nor mirrored, so opacity
+ * does not weaken reflections: clear glass reflects like black glass and transmits what it does
+ * not reflect. The alpha of a map is different: it is the share of the pixel that the surface
+ * covers. Additive surfaces add their scattered light and remove nothing.
  *
- * Coloured glass (MASU_MAP_TINTED) lets through what its base colour says, and blending has one alpha for all
- * channels. So it is drawn once more before, by a pipeline that multiplies (`tints`): the picture is given the hue, then
- * alpha takes from it what the brightest channel loses. Both sides of a ball colour it before either adds its
- * light; what the far one adds is coloured here. Fog between the eye and the glass takes the hue too.
+ * Coloured glass (MASU_MAP_TINTED) transmits its base colour, but blending has one alpha for all
+ * channels. So it is drawn an extra time before, by a multiplying pipeline (`tints`): it multiplies
+ * the image by the hue, then alpha removes the loss of the brightest channel. Both sides of a ball
+ * tint the image before either adds its light; the far side's light is tinted here. Fog between the
+ * camera and the glass is tinted too.
  *
- * Rough glass shows the lit picture without transparent surfaces, blurred (masu_behind), in place of what blending would
- * let through. Both sides of a thing that is not flat are taken to be as rough.
+ * Rough glass shows a blurred copy of the lit image without transparent surfaces (masu_behind)
+ * instead of the blended destination. Both sides of a closed object are assumed to be equally
+ * rough.
  *
- * Glass with a thickness shows that picture where the refracted ray leaves the volume (refracted); so does the side of
- * a thing that faces the eye. Seen from within, the far side is thin glass.
+ * Glass with a thickness shows that copy at the point where the refracted ray leaves the volume
+ * (refracted). Only front sides do; the far side is drawn as thin glass.
  *
- * A thing that is not flat is drawn twice, first what is turned away from the eye, then what faces it:
- * a ball is right in itself, whatever the order of its triangles. It goes by the normals, not by the
- * winding, which files get wrong and negative scales turn. Each fragment is drawn once.
+ * A closed object is drawn twice, first its sides that face away from the camera, then those that
+ * face it, so a ball is correct for any order of its triangles. The normals decide, not the
+ * winding, which is wrong in some files and inverted by negative scales. Each fragment is drawn
+ * once.
  *
- * The depth is the latest image's, of polygons and the SDF alike; there is no depth attachment. With
- * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map, with MASU_LIGHTS points and spots by the
- * lists of tiles, which then begin at the near plane (light_tiles.comp); where the surface is, depth says, as it does for
- * the lists: what is interpolated across a large triangle is less exact. With MASU_LOCAL_SHADOWS their shadows, too,
- * of four taps: nine take 16 registers more.
+ * The depth image has the depths of polygons and the SDF; there is no depth attachment.
+ * Permutations: MASU_TEXTURES: the material's maps; MASU_SUN_MAP: the sun's shadow map;
+ * MASU_LIGHTS: point and spot lights by the tiles' lists, which then begin at the near plane
+ * (light_tiles.comp). Lights use the position from the depth, as the lists do: interpolation across
+ * a large triangle is less exact. MASU_LOCAL_SHADOWS: shadows of these lights, with four taps; nine
+ * need 16 more registers.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_SURFACE /* any of them may have a coat */
+#define MASU_SURFACE /* any material may have a coat */
 #include "push/transparents.h"
 #define MASU_MAPS_TINTS
 #include "shared/materials.h"
@@ -56,7 +60,7 @@
 #endif
 
 layout(constant_id = 0) const bool tints = false;
-layout(constant_id = 12) const uint tinted_glass = 0u; /* the scene has some; MASU_TINTS_ROUGH: and rough one */
+layout(constant_id = 12) const uint tinted_glass = 0u; /* MASU_TINTS_*; 0: no tinted glass */
 const bool any_tints = tinted_glass != 0u;
 const bool any_rough = (tinted_glass & MASU_TINTS_ROUGH) != 0u;
 const bool any_refracted = (tinted_glass & MASU_TINTS_REFRACTED) != 0u;
@@ -75,11 +79,13 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
 #else
 #define MASU_AT_BACKGROUND MASU_AT_LOCAL_SHADOWS
 #endif
-layout(set = MASU_SET_PASS, binding = MASU_AT_BACKGROUND) uniform sampler2D background_image; /* if any_rough or any_refracted */
+/* Bound if any_rough or any_refracted. */
+layout(set = MASU_SET_PASS, binding = MASU_AT_BACKGROUND) uniform sampler2D background_image;
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_rel;
-layout(location = 2) flat in uvec4 in_thing; /* material, flags, layers; which instance, scale: transparents.vert */
+/* Material, flags, layers; instance index, scale: transparents.vert. */
+layout(location = 2) flat in uvec4 in_thing;
 
 #ifdef MASU_TEXTURES
 layout(location = 3) in vec2 in_texcoord;
@@ -96,11 +102,11 @@ layout(location = 5) in vec4 in_color;
 
 layout(location = 0) out vec4 out_color;
 
-/* Sums of many layers stay below what a half holds. */
+/* Sums of many layers must not exceed the range of half floats. */
 const float brightest = 4096.0;
 
 #ifdef MASU_LIGHTS
-/* n: of the surface itself. */
+/* n: the geometric normal. */
 void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 n)
 {
     uvec2 at = uvec2(gl_FragCoord.xy);
@@ -138,13 +144,14 @@ vec4 background(vec2 pixel, float apart)
     return mix(background_level(low, pixel), background_level(low + 1u, pixel), level - float(low));
 }
 
-/* What is behind glass whose two sides are alike and whose lobe has this alpha: each ray leaves as its reflection by a
- * facet would, on the other side (KHR_materials_transmission). A facet of slope t = alpha sqrt(u / (1 - u)) turns a ray
- * by twice its angle; across the gap behind the glass that is so many pixels. TAPS of such rays, of equal u, on a
- * spiral; each takes the level whose texels are as far apart as the taps. The gap is a mean, since blur that changes
- * from pixel to pixel with the depth behind it shows edges. radius: of the circle that half of the rays meet, pixels. */
+/* Background through glass with two equal sides whose lobe has this alpha: each ray leaves like its
+ * reflection by a facet, on the other side (KHR_materials_transmission). A facet of slope
+ * t = alpha sqrt(u / (1 - u)) deflects a ray by twice its angle; the gap behind the glass converts
+ * this to pixels. TAPS rays with evenly spaced u on a spiral each sample the level whose texel
+ * spacing is that of the taps. The gap is averaged: a blur radius that follows the depth per pixel
+ * would show edges. radius: of the circle that half of the rays hit, in pixels. */
 #define TAPS 12
-const float spread = 2.0 * 0.7 * 0.5117; /* 0.7 sqrt(pi / TAPS): more than that blurs twice */
+const float spread = 2.0 * 0.7 * 0.5117; /* 0.7 sqrt(pi / TAPS): larger values blur twice */
 vec3 masu_behind(vec2 pixel, float alpha, out float radius)
 {
     float reach = 0.5 * float(pc.output_height) * masu_rcp(length(frame.up.xyz)), gap = 1.0;
@@ -166,9 +173,10 @@ vec3 masu_behind(vec2 pixel, float alpha, out float radius)
     return sum / float(TAPS);
 }
 
-/* The pixel behind which the refracted ray leaves a volume (KHR_materials_volume); this pixel if a surface in front of
- * the glass is there, or if it is behind the eye. The clip position of this fragment is that of the pixel: the
- * offset is added to it, so that a thickness of 0 changes nothing. volume: thickness, -index of refraction. */
+/* The pixel at which the refracted ray leaves a volume (KHR_materials_volume). This fragment's
+ * pixel if a surface in front of the glass covers that one, or if the exit is behind the camera.
+ * The offset is added to the clip position of the fragment's pixel, so that a thickness of 0
+ * changes nothing. volume: thickness, -index of refraction. */
 vec2 refracted(vec3 direction, vec3 n, vec2 volume)
 {
     vec2 size = vec2(pc.output_width, pc.output_height);
@@ -207,7 +215,7 @@ void main()
     bool first = (any_refracted ? in_thing.w & 1u : in_thing.w) == 0u;
     bool elsewhere = twice && away != first;
 #ifdef MASU_TEXTURES
-    /* Everything that takes derivatives comes before the discard. */
+    /* Derivatives must precede the discard. */
     cover = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);
     if ((tinted_glass & MASU_TINTS_MAPPED) != 0u && (in_thing.y & MASU_MAP_TRANSMISSION) != 0u) {
         opacity = 1.0 - (1.0 - opacity) * cover;
@@ -236,7 +244,7 @@ void main()
     if (elsewhere || back || !(gl_FragCoord.z >= nearest)) {
         discard;
     }
-    vec3 hue = vec3(1.0); /* of what shines through, its brightest channel 1 */
+    vec3 hue = vec3(1.0); /* of transmitted light; its brightest channel is 1 */
     float through = 1.0 - opacity;
     if (any_tints && (in_thing.y & MASU_MAP_TINTED) != 0u) {
         vec3 base = masu_sane(s.albedo, 0.0, 1.0);
@@ -256,7 +264,7 @@ void main()
 #endif
     bool additive = (in_thing.y & MASU_MAP_ADDITIVE) != 0u;
     vec3 color, behind = vec3(0.0);
-    float taken = opacity, surface = opacity; /* of what is behind; by the surface itself, not by what it blurs */
+    float taken = opacity, surface = opacity; /* opacity with and without the blur */
     if (masu_is_unlit(s)) {
         color = s.emissive * opacity;
     } else {
@@ -275,7 +283,7 @@ void main()
         refracts = refracts && !away;
         if (rough || refracts) {
             vec2 pixel = gl_FragCoord.xy;
-            float shown = 0.0; /* share of the background that this shows and blending does not */
+            float shown = 0.0; /* share of the background that is drawn here instead of blended */
             if (refracts) {
                 pixel = refracted(direction, n, unpackHalf2x16(floatBitsToUint(m.emissive.w)));
                 behind = background_level(0u, pixel).rgb;
@@ -285,18 +293,18 @@ void main()
                 float alpha = masu_sane(s.roughness * s.roughness, 0.0, 1.0) * (twice ? 1.41421356 : 1.0);
                 float radius;
                 vec3 blurred = masu_behind(pixel, alpha, radius);
-                float share = smoothstep(1.0, 3.0, radius); /* the finest level may be half as large as the picture */
+                float share = smoothstep(1.0, 3.0, radius); /* finest level: may be half size */
                 behind = refracts ? mix(behind, blurred, share) : blurred * share;
                 shown = max(shown, share);
             }
             vec3 passes = hue * (1.0 - taken);
-            bool both = twice && (in_thing.y & MASU_MAP_SINGLE) == 0u; /* sides are drawn */
+            bool both = twice && (in_thing.y & MASU_MAP_SINGLE) == 0u; /* both sides are drawn */
             behind *= (both ? passes * passes : passes) * cover;
             taken = 1.0 - (1.0 - taken) * (1.0 - shown);
         }
         lit.diffuse += s.emissive;
 #ifdef MASU_LIGHTS
-        /* Last: what has been used up by now takes no registers in the loop. */
+        /* Last, when few values are live: fewer registers in the loop. */
         add_lights(lit, s, b, away ? -skin : skin);
 #endif
         color = lit.diffuse * opacity + (additive ? vec3(0.0) : lit.specular);
@@ -310,6 +318,6 @@ void main()
         float own = additive ? 0.0 : surface * cover;
         color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), own);
     }
-    color += behind; /* fog before it and all */
+    color += behind; /* contains the fog in front of it */
     out_color = vec4(masu_sane(color, 0.0, brightest), masu_sane(taken, 0.0, 1.0));
 }

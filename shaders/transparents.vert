@@ -1,9 +1,10 @@
 /*
- * transparents.vert: one transparent thing, which push.instances of the push constants finds: six words in
- * the buffer of drawn instances, written anew for each frame (src/frame/transparents.c): instance, material,
- * flags, layers and detail of its maps, with depth biases a seventh: the factor on its depth. With MASU_TEXTURES texture coordinates go along, with MASU_ATTRIBUTES colours. Of what is
- * drawn twice the first instance is for what is turned away from the eye. Where it `tints`
- * (transparents.frag), what has no colour for what is behind it shrinks to a point.
+ * transparents.vert: one transparent object. push.instances is its position in the buffer of drawn
+ * instances, where src/frame/transparents.c writes six values for each frame: instance, material,
+ * flags, layers of its maps and the detail (two values). With depth biases there is a seventh: the
+ * factor on its depth. MASU_TEXTURES adds texture coordinates, MASU_ATTRIBUTES colours. If an
+ * object is drawn twice, the first instance is for the sides that face away from the camera. With
+ * `tints` (transparents.frag) objects that do not tint collapse to a point.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -33,11 +34,11 @@ layout(location = 5) out vec4 out_color;
 layout(constant_id = 0) const bool tints = false;
 layout(constant_id = 12) const uint tinted_glass = 0u;
 
-/* Meshes with textures and without have edges in common. */
+/* Meshes with and without textures share edges. */
 invariant gl_Position;
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
-/* Material, flags, layers; which instance, with refraction the scale in the upper half. */
+/* Material, flags, layers; instance index, with refraction the scale in the upper half. */
 layout(location = 2) flat out uvec4 out_thing;
 
 void main()
@@ -50,7 +51,7 @@ void main()
     masu_pass_look(id);
     out_thing = uvec4(drawn[push.instances + 1u], drawn[push.instances + 2u], drawn[push.instances + 3u],
                       uint(gl_InstanceIndex));
-    if ((tinted_glass & MASU_TINTS_REFRACTED) != 0u) { /* of thickness: the mean square over all directions */
+    if ((tinted_glass & MASU_TINTS_REFRACTED) != 0u) { /* thickness scale: RMS of directions */
         float squares = dot(m.row0.xyz, m.row0.xyz) + dot(m.row1.xyz, m.row1.xyz) + dot(m.row2.xyz, m.row2.xyz);
         out_thing.w |= packHalf2x16(vec2(0.0, masu_sqrt(squares / 3.0)));
     }

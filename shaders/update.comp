@@ -1,11 +1,11 @@
 /*
- * update.comp: slots of the SDF that depend on parameters or time, once per frame, so that no sample
- * of the field evaluates them again. Compiled by masu-bake together with the scene's field, and only
- * if there are such slots; a second time with MASU_MOTION, as the pass update_previous: the slots as
- * of the previous frame, from that frame's parameters and time. Copying the present slots before they
- * are overwritten would do, but would be a state that crosses frames.
+ * update.comp: evaluates the slots of the SDF that depend on parameters or time once per frame,
+ * instead of in each sample. Compiled by masu-bake together with the scene's field, only if there
+ * are such slots. With MASU_MOTION it runs again as the pass update_previous, with the previous
+ * frame's parameters and time. Copying the slots before they are overwritten would also work, but
+ * would be state that crosses frames.
  *
- * Slots that depend on the anchor alone (of all that stands still in a scene far from the origin)
+ * Slots that depend only on the anchor (those of all static objects in a scene far from the origin)
  * are data and not code: 64 invocations share them.
  */
 #version 440

@@ -1,6 +1,6 @@
 /*
- * velocity.comp: the velocity of the sky where no polygon is, in scenes without an SDF: how the
- * direction of the pixel has turned. Polygons have written theirs (gbuffer.frag).
+ * velocity.comp: velocity of sky pixels in scenes without an SDF, from the rotation of the camera.
+ * Polygons have written their own velocity (gbuffer.frag).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,12 +1,12 @@
-/* renderer.h: a renderer, and who owns what of it. It lies at the start of the host block, and what
- * depends on the scene behind it: each owner takes its own arrays in api.c's one walk.
+/* renderer.h: the renderer's state and its owners. It is at the start of the host block, before the
+ * arrays whose size depends on the scene: each module allocates its arrays in one pass of api.c.
  *
- *   plan     what every frame is made of; nothing changes it after masu_init, but that the blob of the
- *            scene is forgotten once it is loaded
- *   device   objects of Vulkan
- *   draws    what the recordings draw, in their order
+ *   plan     sizes, passes and resources of every frame; constant after masu_init, except that the
+ *            pointer to the scene's blob is cleared once the scene is loaded
+ *   device   Vulkan objects
+ *   draws    the draws of the recordings, in their order
  *
- * All the rest is what the host knows between frames, a module of src/frame/ each. */
+ * The other members are host state between frames, one module of src/frame/ each. */
 #ifndef MASU_RENDERER_H
 #define MASU_RENDERER_H
 
@@ -59,7 +59,7 @@ struct masu_renderer {
     masu_timeline timeline;
     masu_history history;
     masu_temporal temporal;
-    masu_governor *governor; /* NULL where the description asks for none */
+    masu_governor *governor; /* NULL if the description has none */
     masu_camera_path camera;
     masu_frame_view view; /* of the frame that was handed out last; all 0: there was none */
     masu_sun_sky sun_sky;
@@ -109,12 +109,12 @@ static inline masu_result masu_finish_null_const(const masu_renderer *m, const c
 /* MASU_ERROR_DEVICE_LOST if an earlier call has found that. */
 masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail);
 
-/* Copies what frames need later from the blob into the host block. */
+/* Copies scene data that frames need from the blob into the host block. */
 void masu_copy_scene(masu_renderer *m);
-/* What of it does not change in the slots: draw commands and what culls them. */
+/* Writes the constant data of all slots: draw commands and culling tables. */
 void masu_write_scene(masu_renderer *m);
-/* The steps of masu_frame that write a scene's frame to its slot. Checks come first: a frame that is
- * refused leaves nothing changed. */
+/* The steps of masu_frame that write a scene's frame to its slot. Checks are first: a rejected
+ * frame changes nothing. */
 masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f);
 
 #endif

@@ -1,20 +1,20 @@
 /* car.c: see race.h.
  *
- * A car is a point with a heading. Its front wheels ask for a turn, of which tyres give what they
- * hold; what its velocity has across its heading they take away by and by: that lag is the slip.
- * Grass holds less and slows down. Numbers are those that felt right, not those of any car. */
+ * A car is a point with a heading. The steering requests a yaw rate, which is limited by the
+ * tyres' grip. The tyres reduce the sideways velocity gradually: this delay is the slip. Grass
+ * has less grip and more drag. The constants are tuned by feel and model no real car. */
 #include "race.h"
 
 #include <string.h>
 
 #define BASE 2.7       /* metres between the axles */
-#define PUSH 9.5       /* m/s2 of the motor at rest; it falls to 0 at TOP */
+#define PUSH 9.5       /* m/s2 of the motor at standstill; it falls to 0 at TOP */
 #define TOP 72.0
 #define BACK 9.0       /* m/s backwards at most */
 #define BRAKES 13.0    /* m/s2 */
 #define AIR 0.0009     /* of drag: m/s2 for each (m/s)2 */
 #define ROLLING 0.35   /* m/s2 */
-#define GRASS 5.0      /* m/s2 more beside the road, at speed */
+#define GRASS 5.0      /* additional m/s2 of drag off the road, at speed */
 #define HOLD 15.0      /* m/s2 that the tyres hold across; on grass HOLD_GRASS */
 #define HOLD_GRASS 6.0
 #define STRAIGHTEN 7.0 /* 1/s: how fast slip is taken away, on grass less */
@@ -22,7 +22,7 @@
 #define SLIP 1.7       /* m/s across from which tyres skid */
 #define WIDTH 1.0      /* half of a car's */
 #define APART 3.4      /* metres between two cars that touch */
-#define FOLLOW 7.0     /* 1/s: how fast the eye is where it belongs */
+#define FOLLOW 7.0     /* 1/s: how fast the camera approaches its target */
 
 double car_speed(const car *c) { return dot(c->velocity, c->ahead); }
 
@@ -37,14 +37,15 @@ static void settle(const track *t, car *c, int near) {
     c->at.y = c->place.ground.y;
 }
 
-/* The eye follows its place behind the car by shares of the way that is left, whatever the step;
- * it stays above the ground and on this side of the barriers. dt 0: at once. */
+/* The camera approaches its position behind the car by a share of the remaining distance that
+ * does not depend on the step; it remains above the ground and inside the barriers. dt 0: at
+ * once. */
 static void chase(race *r, double dt) {
     const car *c = &r->cars[0];
     double share = dt > 0 ? 1 - exp(-FOLLOW * dt) : 1;
     vec eye = add(add(c->at, c->ahead, -5.8), c->up, 1.9);
     vec to = add(add(c->at, c->ahead, 6), c->up, 0.9);
-    /* Both are carried along first: only what turns lags behind, not what drives straight on. */
+    /* Both first move with the car: only rotation lags behind, not straight motion. */
     r->eye = mix(add(r->eye, c->velocity, dt), eye, share);
     r->target = mix(add(r->target, c->velocity, dt), to, share);
     track_place p = track_find(r->track, r->eye, c->place.point);
@@ -88,7 +89,7 @@ static double toward(double from, double to, double most) {
 static void drive(car *c, const car_input *in, double dt) {
     vec forward = level(c->heading), right = level(c->heading - PI / 2);
     double speed = dot(c->velocity, forward), slip = dot(c->velocity, right);
-    double full = 0.6 / (1 + fabs(speed) / 14); /* the faster, the less the wheels turn */
+    double full = 0.6 / (1 + fabs(speed) / 14); /* less steering at higher speed */
     c->steer = toward(c->steer, in->steer * full, 1.8 * dt);
     speed += in->throttle * PUSH * (1 - speed / TOP) * dt;
     if (in->brake > 0 && speed <= 0.1) speed = fmax(speed - in->brake * PUSH / 2 * dt, -BACK);
@@ -108,7 +109,8 @@ static void drive(car *c, const car_input *in, double dt) {
     c->at = add(c->at, c->velocity, dt);
 }
 
-/* Out of what it has run into by `metres`; of the speed into it `back` is given back. */
+/* Moves the car out of an obstacle by `metres`; `back` is the restitution of the normal
+ * velocity. */
 static void push(car *c, vec out, double metres, double into, double back) {
     c->at = add(c->at, out, metres);
     if (into > 0) c->velocity = add(c->velocity, out, (1 + back) * into);
@@ -141,7 +143,7 @@ void race_step(race *r, const car_input *input, double dt) {
     r->distance += sqrt(dot(mine->velocity, mine->velocity)) * dt, r->time += dt;
     chase(r, dt);
     if (floor(mine->travelled / r->track->length) <= r->laps) return;
-    r->laps++; /* who turns round and crosses the line again has won nothing */
+    r->laps++; /* crossing the line backwards and again gains no lap */
     if (r->best == 0 || r->time < r->best) r->best = r->time;
     r->time = 0;
 }

@@ -65,7 +65,7 @@ void effects_reserve(const masu_scene *scene, masu_reserve *reserve) {
     reserve->textures = 1;
     reserve->texture_size = (VkExtent2D){ATLAS, ATLAS};
     if (material < 0) return;
-    /* mesh_upload stays 0: one mesh per frame is enough. */
+    /* mesh_upload is 0: one mesh per frame is enough. */
     reserve->meshes[0] = (masu_mesh_kind){.meshes = MARK_CHUNKS,
                                           .material = (uint32_t)material,
                                           .vertices = 4 * MARK_QUADS,
@@ -114,8 +114,8 @@ static void extend_mark(effects *e, const car *c, const track_wheel *w, mark_whe
     *m = end;
 }
 
-/* Creates or replaces at most one mesh: what desc.reserve.mesh_upload allows per frame. Marks do
- * not move, so they are replaced, not deformed: their velocity stays 0. */
+/* Creates or replaces at most one mesh: desc.reserve.mesh_upload allows one per frame. Marks are
+ * static, so they are replaced, not deformed: their velocity is always 0. */
 static masu_result upload_marks(effects *e, masu_renderer *masu, masu_detail *detail) {
     static const float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     const masu_look look = {.flags = MASU_LOOK_NO_SHADOW | MASU_LOOK_NOT_TRACED};
@@ -201,9 +201,8 @@ static uint32_t list_puffs(effects *e) {
     return count;
 }
 
-/* Drops fall through a cube that goes along with the camera: one that leaves it comes in on the
- * other side. A streak is as long as the drop moves, seen from the camera, while a shutter is
- * open. */
+/* Drops fall through a cube around the camera: a drop that leaves it enters on the other side. A
+ * streak is as long as the drop moves relative to the camera during the exposure. */
 static uint32_t list_drops(effects *e, const race *r, double time) {
     const vec fall = {1.2, -9, 0.6}, step = add(r->cars[0].velocity, fall, -1);
     for (uint32_t i = 0; i < DROPS; i++) {

@@ -15,7 +15,7 @@
 typedef struct mark_chunk {
     float positions[4 * MARK_QUADS][3], normals[4 * MARK_QUADS][3];
     uint32_t quads;
-    bool dirty; /* not uploaded as it is */
+    bool dirty; /* changed since its last upload */
     masu_model model; /* id 0: not created yet */
 } mark_chunk;
 
@@ -26,7 +26,7 @@ typedef struct mark_wheel {
 
 typedef struct puff {
     vec at, velocity;
-    float age, life; /* seconds; gone when age >= life */
+    float age, life; /* seconds; dead when age >= life */
     float size, turn, gray, opacity;
     int cell; /* of the atlas */
 } puff;
@@ -52,7 +52,7 @@ void effects_reserve(const masu_scene *scene, masu_reserve *reserve);
 /* A new renderer has nothing yet: the next frames upload everything again. */
 void effects_reset(effects *e, const masu_scene *scene);
 void effects_step(effects *e, const race *race, double dt, bool rain);
-/* Uploads what has changed, and adds particles and trails to the frame. */
+/* Uploads changed marks, and adds particles and trails to the frame. */
 masu_result effects_frame(effects *e, masu_renderer *masu, const race *race, bool rain,
                           masu_frame_desc *frame, masu_detail *detail);
 

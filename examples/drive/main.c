@@ -1,9 +1,9 @@
-/* main.c: drive SCENE.masu TRACK: a race for one, and an example of a game on Masu. docs/drive.md
- * says how to play it, and what each file shows.
+/* main.c: drive SCENE.masu TRACK: a racing game for one player, and an example of a game on Masu.
+ * docs/drive.md explains the controls, and what each file demonstrates.
  *
- * All memory is asked for before the first frame; then heap_closed is set, and whatever asks for
- * more ends the program. With a script the clock is not looked at: the same script gives the same
- * drive, at a fixed rung the same pictures. */
+ * All memory is allocated before the first frame; then heap_closed is set, and any later
+ * allocation ends the program. With a script the clock is not used: the same script gives the
+ * same drive, and at a fixed rung the same images. */
 #include "render.h"
 #include "script.h"
 
@@ -71,7 +71,7 @@ static void pump_events(game *g) {
     }
 }
 
-/* What of a key or a stick: 0..1, of the stick's other half below 0. */
+/* Value of a key or of one half of a stick's axis: 0..1, negative for the other half. */
 static double pedal(game *g, SDL_Scancode arrow, SDL_Scancode letter,
                     SDL_GameControllerAxis axis, int way) {
     double stick = g->pad ? way * SDL_GameControllerGetAxis(g->pad, axis) / 32767.0 : 0;
@@ -109,7 +109,7 @@ static bool follow_script(game *g, unsigned frame) {
     return true;
 }
 
-/* All that another size of the window takes. Of none, hidden or rolled up, nothing is drawn. */
+/* Rebuilds for a new window size. Nothing is drawn while the window is hidden or minimized. */
 static bool follow_window(game *g) {
     vkDeviceWaitIdle(g->window.device);
     if (!window_swapchain(&g->window)) return SDL_Delay(20), true;
@@ -170,8 +170,9 @@ int main(int argc, char **argv) {
     const render *r = &g.render;
     if (good)
         printf("frames %u rungs 0x%02x changes %u over %u laps %d best %.2f distance %.1f "
-               "resizes %d bars %u late %u\n", r->frames, r->rungs, r->changes, r->over, g.race.laps,
-               g.race.best, g.race.distance, g.resizes, r->bars, r->late);
+               "resizes %d bars %u late %u\n",
+               r->frames, r->rungs, r->changes, r->over, g.race.laps, g.race.best, g.race.distance,
+               g.resizes, r->bars, r->late);
     render_close(&g.render);
     window_close(&g.window);
     script_close(&g.script);

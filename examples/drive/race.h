@@ -1,6 +1,6 @@
-/* race.h: the road in numbers, of a file beside the scene (docs/drive.md), and cars on it,
- * yours by its pedals, the others by an autopilot. Nothing here knows of pictures; the same inputs
- * and steps give the same drive. */
+/* race.h: the track, read from a file next to the scene (docs/drive.md), and the cars on it: the
+ * player's, driven by pedals, and others by an autopilot. Independent of rendering; the same
+ * inputs and steps give the same drive. */
 #ifndef DRIVE_RACE_H
 #define DRIVE_RACE_H
 
@@ -30,8 +30,8 @@ static inline double clamp(double x, double low, double high) { return fmin(fmax
 typedef struct track_point {
     vec at, up, ahead;
     double along; /* metres from the first point */
-    /* Left, right: metres from the middle to the edge of the road, and to where no car gets by and
-     * the ground lies `rise` above the plane of the road. */
+    /* Left, right: metres from the centre line to the edge of the road, and to the barrier, at
+     * which the ground is `rise` above the plane of the road. */
     double edge[2], barrier[2], rise[2];
     double pace; /* m/s that a careful driver has here */
 } track_point;
@@ -61,14 +61,15 @@ typedef struct track {
 typedef struct track_place {
     int point;    /* behind it */
     double along; /* of the lap */
-    double side;  /* metres right of the middle */
+    double side;  /* metres right of the centre line */
     vec ground, up, ahead, right;
     double edge, barrier, pace; /* on this side */
 } track_place;
 
 /* False, with one line on stderr: it is not such a file, or has more than fits. */
 bool track_read(track *t, const char *path);
-/* The place nearest to `at`. near: the point of the place before, to look near; -1: everywhere. */
+/* The track point nearest to `at`. near: the index of the last result, to search near it; -1:
+ * search all. */
 track_place track_find(const track *t, vec at, int near);
 track_place track_along(const track *t, double along, double side);
 
@@ -86,9 +87,9 @@ typedef struct car {
     double steer;       /* of the front wheels, radians, right */
     double roll;        /* of all wheels, metres since the start */
     double travelled;   /* metres of road since the start line, laps and all */
-    double lane;        /* of the autopilot: metres right of the middle */
+    double lane;        /* of the autopilot: metres right of the centre line */
     track_place place;
-    bool off; /* beside the road */
+    bool off; /* off the road */
     bool braking; /* its brake lights are on */
     double skid; /* 0..1: of the rear tyres */
 } car;

@@ -1,8 +1,9 @@
 /* render.c: see render.h.
  *
- * The box: a static block of the host's memory and one of the device's for each role, as large as
- * the largest window that the game is for needs. masu_memory_query says what a plan needs; what
- * does not fit is refused before anything is made. On unified memory the first role is all. */
+ * Memory: one static block of host memory, and one block of device memory for each role, large
+ * enough for the largest supported window. masu_memory_query returns a plan's requirements; a
+ * plan that does not fit is rejected before anything is created. On unified memory the first
+ * role holds everything. */
 #include "render.h"
 
 #include <stdio.h>
@@ -57,7 +58,7 @@ static bool show_progress(render *r, const masu_progress *p) {
     return good;
 }
 
-/* A renderer for the window as large as it is, in the blocks. */
+/* Creates a renderer for the window's present size, in the blocks. */
 static bool build(render *r) {
     masu_desc desc = describe(r);
     effects_reset(&r->effects, &r->scene);
@@ -65,7 +66,7 @@ static bool build(render *r) {
            failed(&r->detail);
 }
 
-/* Where the brake lights of a car are, from the scene: in the axes of the car. */
+/* Finds the brake lights of a car in the scene, relative to the car. */
 static void find_brakes(render *r, int car, const track_car *start) {
     masu_model_state body, brake;
     if (masu_model_get(r->masu, r->bodies[car], &body, NULL)) return;
@@ -125,11 +126,12 @@ bool render_resize(render *r, const track *t) {
     masu_desc desc = describe(r);
     masu_governor_state learnt;
     if (masu_resize(r->masu, desc.output, &desc.targets, NULL, NULL) == MASU_OK) return true;
-    /* It is larger than what was planned for, or has another number of images. */
+    /* The window is larger than planned, or has another number of images. */
     if (masu_governor_save(r->masu, &learnt, NULL)) return false;
     masu_destroy(r->masu);
     r->masu = NULL, r->frame = 0;
-    return build(r) && render_load(r, t) && masu_governor_restore(r->masu, &learnt, NULL) == MASU_OK;
+    return build(r) && render_load(r, t) &&
+           masu_governor_restore(r->masu, &learnt, NULL) == MASU_OK;
 }
 
 void render_close(render *r) {
@@ -181,7 +183,7 @@ static masu_result place_car(render *r, int i, const car *c, const track_car *st
     return result;
 }
 
-/* A spot that no instance carries is in world space: head lights follow by being set anew. */
+/* A spot without an instance is in world space: head lights are updated in each frame. */
 static masu_result set_lamps(render *r, const car *c, float on) {
     vec right = cross(c->ahead, c->up), to = add(c->ahead, c->up, -0.06);
     masu_result result = MASU_OK;

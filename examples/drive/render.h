@@ -13,7 +13,7 @@ typedef struct render {
     masu_renderer *masu;
     masu_detail detail; /* of the masu_* call that failed */
     float target_ms; /* of the governor */
-    int fixed_rung;  /* instead of it; -1 */
+    int fixed_rung;  /* fixed rung instead of the governor; -1: none */
     uint64_t frame;  /* since the renderer was made, as the library counts */
     overlay overlay;
     masu_model bodies[TRACK_CARS], wheels[TRACK_CARS][TRACK_WHEELS];
@@ -22,7 +22,7 @@ typedef struct render {
     effects effects;
     bool stepping; /* masu_init_step has not finished */
     masu_punctual_light lamps[2]; /* "head0" and "head1", which your car carries */
-    /* What has happened, for the line at the end: */
+    /* For the summary at the end: */
     uint32_t frames, over; /* the latter took longer than the target */
     uint32_t rungs, rung, changes; /* a bit per rung that was drawn; the last; how often another */
     uint32_t shown_ms;   /* when the loading bar was drawn last */
@@ -33,10 +33,10 @@ typedef struct render_view {
     double time;
     float step; /* seconds since the frame before */
     bool cut, dusk, rain, bloom, lamps, paused;
-    char photo[256]; /* file for a picture of this frame, or "" */
+    char photo[256]; /* file for an image of this frame, or "" */
 } render_view;
 
-/* Takes all of its memory: nothing is asked for later. All say what went wrong. */
+/* Allocates all memory: there are no later allocations. These functions report their errors. */
 bool render_open(render *r, window *w, const char *scene_path);
 /* Loads the scene and creates pipelines, with a loading bar, until frames can be drawn. */
 bool render_load(render *r, const track *t);

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define GRIP 9.0    /* m/s2 that the careful driver takes bends with, */
+#define GRIP 9.0    /* m/s2 of lateral acceleration of the autopilot */
 #define BRAKING 6.0 /* and brakes with */
 #define FASTEST 58.0
 #define REACH 12 /* points looked at before and behind the last one */
@@ -36,8 +36,8 @@ static bool read_cars(FILE *in, track *t) {
     return t->cars > 0;
 }
 
-/* Where the road points to, how far it is, and how fast one can be: first by the bend, then by what
- * can be braked before the next, twice round. */
+/* Computes direction, distance and speed limit of each point: first from curvature, then from
+ * the braking distance to the next curve, in two laps. */
 static void measure(track *t) {
     int n = t->count;
     for (int i = 0; i < n; i++) {

@@ -28,7 +28,8 @@ void overlay_close(overlay *o);
 /* Records w->commands[slot]: the lines that fit into the image, then the copy. The library leaves
  * the image in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; afterwards it is ready to be presented. With
  * `blank` set the image has no contents yet, and is filled with dark gray first. */
-bool overlay_record(overlay *o, uint32_t slot, uint32_t image, const overlay_line *lines, int count, bool copy);
+bool overlay_record(overlay *o, uint32_t slot, uint32_t image, const overlay_line *lines, int count,
+                    bool copy);
 /* Waits, and writes the copy as a BMP of at most 2560x1440 pixels. */
 bool overlay_save(overlay *o, const char *file);
 

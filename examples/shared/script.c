@@ -20,7 +20,8 @@ bool script_next(script *s, unsigned frame, script_line *out) {
         snprintf(line, sizeof line, "%.*s", (int)length, s->next);
         memset(out, 0, sizeof *out);
         bool empty = line[0] == '#' || line[strspn(line, " \t\r")] == 0;
-        if (!empty && sscanf(line, "frame %u %15s %255s %7s", &at, out->verb, out->value, out->how) < 2)
+        if (!empty &&
+            sscanf(line, "frame %u %15s %255s %7s", &at, out->verb, out->value, out->how) < 2)
             snprintf(out->verb, sizeof out->verb, "%.15s", line);
         if (at > frame) return false;
         s->next += length + (s->next[length] == '\n');
@@ -33,13 +34,16 @@ bool script_resize(const script_line *line, window *w) {
     VkSurfaceCapabilitiesKHR is;
     int width, height;
     char more;
-    if (strcmp(line->verb, "resize") || sscanf(line->value, "%dx%d%c", &width, &height, &more) != 2) return false;
+    if (strcmp(line->verb, "resize") || sscanf(line->value, "%dx%d%c", &width, &height, &more) != 2)
+        return false;
     SDL_SetWindowSize(w->sdl, width, height);
     for (int i = 0; i < 200; i++) {
         SDL_Delay(10);
         SDL_PumpEvents();
         if (vkGetPhysicalDeviceSurfaceCapabilitiesKHR(w->gpu, w->surface, &is)) break;
-        if (is.currentExtent.width == (uint32_t)width && is.currentExtent.height == (uint32_t)height) break;
+        if (is.currentExtent.width == (uint32_t)width &&
+            is.currentExtent.height == (uint32_t)height)
+            break;
     }
     return true;
 }

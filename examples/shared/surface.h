@@ -16,7 +16,8 @@ static inline VkFormat surface_format(const VkSurfaceFormatKHR *list, uint32_t c
         const VkFormat *wanted = (round == 0) != srgb ? unorm : encoded;
         for (uint32_t k = 0; k < 2; k++)
             for (uint32_t i = 0; i < count; i++)
-                if (list[i].format == wanted[k] && list[i].colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)
+                if (list[i].format == wanted[k] &&
+                    list[i].colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)
                     return wanted[k];
     }
     return VK_FORMAT_UNDEFINED;
@@ -31,7 +32,8 @@ static inline VkSurfaceTransformFlagBitsKHR surface_transform(const VkSurfaceCap
 
 /* With `paced` FIFO, which every surface has; else the mode with the lowest latency: MAILBOX,
  * IMMEDIATE (tears). */
-static inline VkPresentModeKHR surface_mode(const VkPresentModeKHR *list, uint32_t count, bool paced) {
+static inline VkPresentModeKHR surface_mode(const VkPresentModeKHR *list, uint32_t count,
+                                            bool paced) {
     VkPresentModeKHR best = VK_PRESENT_MODE_FIFO_KHR;
     for (uint32_t i = 0; i < count && !paced; i++) {
         if (list[i] == VK_PRESENT_MODE_MAILBOX_KHR) return list[i];

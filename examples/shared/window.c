@@ -22,7 +22,8 @@ static bool sdl_failed(const char *what) {
 
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                  VkDebugUtilsMessageTypeFlagsEXT types,
-                                                 const VkDebugUtilsMessengerCallbackDataEXT *data, void *user) {
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data,
+                                                 void *user) {
     (void)severity, (void)types;
     ((window *)user)->messages++;
     fprintf(stderr, "validation: %s\n", data->pMessage);
@@ -45,7 +46,8 @@ static bool create_instance(window *w, bool validate) {
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                            VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT};
-    PFN_vkVoidFunction create = vkGetInstanceProcAddr(w->instance, "vkCreateDebugUtilsMessengerEXT");
+    PFN_vkVoidFunction create =
+        vkGetInstanceProcAddr(w->instance, "vkCreateDebugUtilsMessengerEXT");
     TRY(((PFN_vkCreateDebugUtilsMessengerEXT)create)(w->instance, &messenger, NULL, &w->messenger));
     return true;
 }
@@ -94,7 +96,8 @@ static bool create_device(window *w) {
     VkCommandPoolCreateInfo pool = {INFO(COMMAND_POOL_CREATE_INFO), .queueFamilyIndex = w->family,
                                     .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT};
     TRY(vkCreateCommandPool(w->device, &pool, NULL, &w->pool));
-    VkCommandBufferAllocateInfo buffers = {INFO(COMMAND_BUFFER_ALLOCATE_INFO), .commandPool = w->pool,
+    VkCommandBufferAllocateInfo buffers = {INFO(COMMAND_BUFFER_ALLOCATE_INFO),
+                                           .commandPool = w->pool,
                                            .commandBufferCount = WINDOW_SLOTS};
     TRY(vkAllocateCommandBuffers(w->device, &buffers, w->commands));
     VkFenceCreateInfo fence = {INFO(FENCE_CREATE_INFO), .flags = VK_FENCE_CREATE_SIGNALED_BIT};
@@ -119,10 +122,12 @@ static bool choose_format(window *w) {
 bool window_open(window *w, const char *title, int width, int height, bool validate) {
     int any = SDL_WINDOWPOS_CENTERED;
     if (SDL_Init(SDL_INIT_VIDEO | SDL_INIT_GAMECONTROLLER)) return sdl_failed("SDL");
-    w->sdl = SDL_CreateWindow(title, any, any, width, height, SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE);
+    w->sdl =
+        SDL_CreateWindow(title, any, any, width, height, SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE);
     if (!w->sdl) return sdl_failed("no window");
     if (!create_instance(w, validate)) return false;
-    if (!SDL_Vulkan_CreateSurface(w->sdl, w->instance, &w->surface)) return sdl_failed("no surface");
+    if (!SDL_Vulkan_CreateSurface(w->sdl, w->instance, &w->surface))
+        return sdl_failed("no surface");
     return choose_device(w) && create_device(w) && choose_format(w) && window_swapchain(w);
 }
 
@@ -154,13 +159,19 @@ bool window_swapchain(window *w) {
     uint32_t least = can.minImageCount > 3 ? can.minImageCount : 3;
     w->size = size, w->replaced = w->swapchain;
     VkSwapchainCreateInfoKHR info = {
-        INFO(SWAPCHAIN_CREATE_INFO_KHR), .surface = w->surface, .oldSwapchain = w->replaced,
+        INFO(SWAPCHAIN_CREATE_INFO_KHR),
+        .surface = w->surface,
+        .oldSwapchain = w->replaced,
         .minImageCount = can.maxImageCount && least > can.maxImageCount ? can.maxImageCount : least,
-        .imageFormat = w->format, .imageColorSpace = VK_COLOR_SPACE_SRGB_NONLINEAR_KHR,
-        .imageExtent = size, .imageArrayLayers = 1,
+        .imageFormat = w->format,
+        .imageColorSpace = VK_COLOR_SPACE_SRGB_NONLINEAR_KHR,
+        .imageExtent = size,
+        .imageArrayLayers = 1,
         .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-        .preTransform = surface_transform(&can), .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
-        .presentMode = surface_mode(modes, mode_count, !w->unpaced), .clipped = VK_TRUE};
+        .preTransform = surface_transform(&can),
+        .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
+        .presentMode = surface_mode(modes, mode_count, !w->unpaced),
+        .clipped = VK_TRUE};
     w->rotated = info.preTransform != can.currentTransform;
     TRY(vkCreateSwapchainKHR(w->device, &info, NULL, &w->swapchain));
     memset(w->submit_ns, 0, sizeof w->submit_ns); /* the time between two sizes is not a frame
@@ -176,20 +187,25 @@ void window_drop(window *w) {
 }
 
 static uint64_t clock_ns(void) {
-    return (uint64_t)(1e9 * (double)SDL_GetPerformanceCounter() / (double)SDL_GetPerformanceFrequency());
+    return (uint64_t)(1e9 * (double)SDL_GetPerformanceCounter() /
+                      (double)SDL_GetPerformanceFrequency());
 }
 
 VkResult window_begin(window *w, uint32_t slot, uint32_t *image) {
     VkResult r = vkWaitForFences(w->device, 1, &w->fences[slot], VK_TRUE, UINT64_MAX);
-    uint64_t before = w->done_ns[!slot], from = w->submit_ns[slot] > before ? w->submit_ns[slot] : before;
+    uint64_t before = w->done_ns[!slot],
+             from = w->submit_ns[slot] > before ? w->submit_ns[slot] : before;
     w->done_ns[slot] = clock_ns();
     w->frame_ms = (double)(w->done_ns[slot] - from) / 1e6;
-    if (!r) r = vkAcquireNextImageKHR(w->device, w->swapchain, UINT64_MAX, w->acquired[slot], VK_NULL_HANDLE, image);
+    if (!r)
+        r = vkAcquireNextImageKHR(w->device, w->swapchain, UINT64_MAX, w->acquired[slot],
+                                  VK_NULL_HANDLE, image);
     if (r != VK_ERROR_OUT_OF_DATE_KHR) (void)check(r, "taking an image of the window");
     return r == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : r; /* usable; window_end reports it */
 }
 
-VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuffer *list, uint32_t count) {
+VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuffer *list,
+                    uint32_t count) {
     VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
     VkSubmitInfo submit = {INFO(SUBMIT_INFO), NULL, 1, &w->acquired[slot], &stage, count, list, 1,
                            &w->drawn[image]};
@@ -206,13 +222,15 @@ VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuf
 }
 
 bool window_run(window *w, VkCommandBuffer commands) {
-    VkSubmitInfo submit = {INFO(SUBMIT_INFO), .commandBufferCount = 1, .pCommandBuffers = &commands};
+    VkSubmitInfo submit = {INFO(SUBMIT_INFO), .commandBufferCount = 1,
+                           .pCommandBuffers = &commands};
     TRY(vkQueueSubmit(w->queue, 1, &submit, VK_NULL_HANDLE));
     TRY(vkQueueWaitIdle(w->queue));
     return true;
 }
 
-bool window_memory(window *w, uint32_t type, VkDeviceSize bytes, VkDeviceMemory *memory, void **mapped) {
+bool window_memory(window *w, uint32_t type, VkDeviceSize bytes, VkDeviceMemory *memory,
+                   void **mapped) {
     VkMemoryAllocateInfo info = {INFO(MEMORY_ALLOCATE_INFO), NULL, bytes, type};
     TRY(vkAllocateMemory(w->device, &info, NULL, memory));
     if (mapped) TRY(vkMapMemory(w->device, *memory, 0, VK_WHOLE_SIZE, 0, mapped));

@@ -60,10 +60,12 @@ void window_drop(window *w);
 VkResult window_begin(window *w, uint32_t slot, uint32_t *image);
 /* Submits `count` command buffers and presents the image. Results as for window_begin, also
  * VK_SUBOPTIMAL_KHR. */
-VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuffer *list, uint32_t count);
+VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuffer *list,
+                    uint32_t count);
 bool window_run(window *w, VkCommandBuffer commands); /* submits and waits: for masu_load */
 /* Device memory of a type; mapped if `mapped` is not NULL. */
-bool window_memory(window *w, uint32_t type, VkDeviceSize bytes, VkDeviceMemory *memory, void **mapped);
+bool window_memory(window *w, uint32_t type, VkDeviceSize bytes, VkDeviceMemory *memory,
+                   void **mapped);
 /* Allocates blocks of `bytes` for the roles of a plan, in its memory types: for
  * masu_desc.device_blocks. */
 bool window_blocks(window *w, const masu_memory *need, const VkDeviceSize bytes[MASU_ROLE_COUNT],

@@ -41,8 +41,8 @@ int masu_isa_child(const char *scene_path, const char *ladder, masu_desc *desc) 
     good = good && masu_isa_compile(desc, say_pass, &rows, error, sizeof error);
     free(bytes);
     if (!good) return masu_cli_error("%s", error);
-    return masu_isa_send(&rows, stdout) ? MASU_CLI_OK
-                                        : masu_cli_error("cannot write to standard output");
+    if (!masu_isa_send(&rows, stdout)) return masu_cli_error("cannot write to standard output");
+    _Exit(MASU_CLI_OK); /* the renderer and its device still exist */
 }
 
 /* ---- The parent ------------------------------------------------------------------------------ */

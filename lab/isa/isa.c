@@ -34,10 +34,10 @@ static bool compile(masu_desc *desc, char *error, size_t size) {
         good = block && !masu_init(desc, block, need.host_bytes, &m, &detail);
         if (!block) snprintf(detail.text, sizeof detail.text, "out of memory");
     }
-    if (!good) snprintf(error, size, "%s", detail.text);
-    masu_destroy(m);
+    if (good) return true; /* not destroyed: a thread of V3DV would crash without its GPU */
+    snprintf(error, size, "%s", detail.text);
     free(block);
-    return good;
+    return false;
 }
 
 bool masu_isa_compile(const masu_desc *given, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
@@ -60,13 +60,12 @@ bool masu_isa_compile(const masu_desc *given, void (*before)(const char *pass), 
     desc.ray_query = MASU_OFF; /* these GPUs use the built-in BVH */
     desc.debug.labels = 1;     /* names, from which rows get their pass */
     give_targets(&desc);
-    bool good = compile(&desc, error, error_size);
-    if (good && rows->failed[0]) {
-        snprintf(error, error_size, "%s", rows->failed);
-        good = false;
+    if (!compile(&desc, error, error_size)) {
+        masu_null_device_close(&device);
+        return false;
     }
-    masu_null_device_close(&device);
-    return good;
+    if (rows->failed[0]) snprintf(error, error_size, "%s", rows->failed);
+    return !rows->failed[0];
 }
 
 bool masu_isa_send(const masu_isa_rows *rows, FILE *f) {

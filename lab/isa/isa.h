@@ -13,26 +13,29 @@
 
 #include <stdio.h>
 
-/* FIELD(ID, name, unit and meaning, its names in RADV, ANV, Turnip; NULL: not reported) */
+/* FIELD(ID, name, unit and meaning, its names in RADV, Intel's drivers, Turnip, V3DV; NULL: not
+ * reported; V3DV's spills and fills are its bytes again). PanVK's numbers are read from the lines that it prints. */
 #define MASU_ISA_FIELDS(FIELD)                                                                     \
     FIELD(REGISTERS, "registers", "vector registers of a lane (Turnip: of four numbers)", "VGPRs", \
-          NULL, "Registers used")                                                                  \
-    FIELD(WAVES, "waves", "waves that a SIMD (Turnip: a core) holds at once", "Subgroups per SIMD", \
-          NULL, "Max Waves Per Core")                                                              \
+          NULL, "Registers used", NULL)                                                            \
+    FIELD(WAVES, "waves",                                                                          \
+          "waves that a SIMD (Turnip: a core; V3DV: a QPU, of 4) holds at once; PanVK: 2 of 2 if " \
+          "32 registers are enough",                                                               \
+          "Subgroups per SIMD", NULL, "Max Waves Per Core", "Thread Count")                        \
     FIELD(INSTRUCTIONS, "instructions", "instructions", "Instructions", "Instruction Count",       \
-          "Instruction Count")                                                                     \
-    FIELD(CYCLES, "cycles", "RADV: inverse throughput; ANV: cycles", "Inverse Throughput",         \
-          "Cycle Count", NULL)                                                                     \
-    FIELD(LATENCY, "latency", "cycles of one wave alone", "Latency", NULL, NULL)                   \
-    FIELD(SENDS, "sends", "messages to memory and samplers", NULL, "SEND Count", NULL)             \
+          "Instruction Count", "Instruction Count")                                                \
+    FIELD(CYCLES, "cycles", "RADV: inverse throughput; Intel and PanVK: cycles",                   \
+          "Inverse Throughput", "Cycle Count", NULL, NULL)                                         \
+    FIELD(LATENCY, "latency", "cycles of one wave alone", "Latency", NULL, NULL, NULL)             \
+    FIELD(SENDS, "sends", "messages to memory and samplers", NULL, "SEND Count", NULL, NULL)       \
     FIELD(SPILLS, "spills", "registers written to memory", "Spilled VGPRs", "Spill Count",         \
-          "STP Count")                                                                             \
-    FIELD(FILLS, "fills", "and read again", NULL, "Fill Count", "LDP Count")                       \
-    FIELD(SCALAR_SPILLS, "scalar_spills", "scalar registers put into vector ones", "Spilled SGPRs", \
-          NULL, NULL)                                                                              \
-    FIELD(SCRATCH, "scratch", "bytes of memory of a lane (ANV: of a thread)", "Scratch size",      \
-          "Scratch Memory Size", NULL)                                                             \
-    FIELD(LDS, "lds", "bytes of shared memory of a group", "LDS size", NULL, NULL)
+          "STP Count", NULL)                                                               \
+    FIELD(FILLS, "fills", "and read again", NULL, "Fill Count", "LDP Count", NULL)          \
+    FIELD(SCALAR_SPILLS, "scalar_spills", "scalar registers put into vector ones",                 \
+          "Spilled SGPRs", NULL, NULL, NULL)                                                       \
+    FIELD(SCRATCH, "scratch", "bytes of memory of a lane (Intel, V3DV: of a thread)",              \
+          "Scratch size", "Scratch Memory Size", NULL, "Spill Size")                               \
+    FIELD(LDS, "lds", "bytes of shared memory of a group", "LDS size", NULL, NULL, NULL)
 
 typedef enum masu_isa_field {
 #define MASU_ISA_ID(ID, ...) MASU_ISA_##ID,
@@ -61,7 +64,8 @@ typedef struct masu_isa_rows {
 
 /* Compiles all pipelines of the plan, in a process with the GPU's environment. `desc` has a scene,
  * but no device or targets. `before` is called with the pass of the next pipelines, so that a
- * compiler crash can be attributed to it. On false `error` holds one line. */
+ * compiler crash can be attributed to it. On true the renderer and its device still exist: the
+ * process must end by _Exit. On false `error` holds one line. */
 bool masu_isa_compile(const masu_desc *desc, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
                       size_t error_size);
 

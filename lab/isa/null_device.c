@@ -1,9 +1,11 @@
 /* null_device.c: see null_device.h. */
+#define _POSIX_C_SOURCE 200809L /* dup2, fileno */
 #include "lab/isa/null_device.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { PIPELINES = 256, EXECUTABLES = 8, STATISTICS = 64 };
 
@@ -34,8 +36,9 @@ static void fail(const char *what) {
 
 /* ---- Statistics ------------------------------------------------------------------------------ */
 
-static const char *const field_names[MASU_ISA_FIELD_COUNT][3] = {
-#define NAMES(ID, name, what, radv, anv, turnip) {radv, anv, turnip},
+enum { NAME_SETS = 4 };
+static const char *const field_names[MASU_ISA_FIELD_COUNT][NAME_SETS] = {
+#define NAMES(ID, name, what, ...) {__VA_ARGS__},
     MASU_ISA_FIELDS(NAMES)
 #undef NAMES
 };
@@ -57,14 +60,13 @@ static void read_values(VkPipeline pipeline, uint32_t executable, masu_isa_row *
     uint32_t n = STATISTICS;
     for (uint32_t i = 0; i < STATISTICS; i++)
         list[i].sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
-    for (uint32_t k = 0; k < MASU_ISA_FIELD_COUNT; k++) row->value[k] = (double)NAN;
     if (null.statistics(null.device->device, &info, &n, list) < 0) {
         fail("vkGetPipelineExecutableStatisticsKHR fails");
         return;
     }
     for (uint32_t i = 0; i < n; i++) {
         for (uint32_t k = 0; k < MASU_ISA_FIELD_COUNT; k++) {
-            for (uint32_t d = 0; d < 3; d++) {
+            for (uint32_t d = 0; d < NAME_SETS; d++) {
                 if (field_names[k][d] && !strcmp(field_names[k][d], list[i].name))
                     row->value[k] = number(&list[i]);
             }
@@ -72,7 +74,80 @@ static void read_values(VkPipeline pipeline, uint32_t executable, masu_isa_row *
     }
 }
 
-static void read_pipeline(VkPipeline pipeline) {
+static masu_isa_row *add_row(const char *stage) {
+    masu_isa_row *row = &null.rows->row[null.rows->count++];
+    snprintf(row->pipeline, sizeof row->pipeline, "(no name)");
+    snprintf(row->stage, sizeof row->stage, "%.*s", MASU_ISA_TEXT - 1, stage);
+    for (uint32_t k = 0; k < MASU_ISA_FIELD_COUNT; k++) row->value[k] = (double)NAN;
+    return row;
+}
+
+/* PanVK prints its statistics to standard error, a line for each compiled shader: "SHADER-DB:
+ * MESA_SHADER_COMPUTE shader: 90 inst, .., 12.5 cycles, .., 2 threads, 0 loops, 0:0
+ * spills:fills". */
+static bool is_printed(void) { return getenv("BIFROST_MESA_DEBUG") != NULL; }
+
+/* Reads the number before a word. */
+static double before_word(const char *line, const char *word) {
+    const char *at = strstr(line, word);
+    while (at && at > line && strchr("0123456789.", at[-1])) at--;
+    return at ? strtod(at, NULL) : (double)NAN;
+}
+
+static void read_line(const char *line) {
+    static const struct {
+        const char *printed, *stage;
+    } stages[] = {{"_VERTEX", "Vertex Shader"},
+                  {"_POSITION", "Vertex Shader; position"},
+                  {"_VARYING", "Vertex Shader; others"},
+                  {"_FRAGMENT", "Fragment Shader"},
+                  {"_COMPUTE", "Compute Shader"}};
+    const char *stage = "(no stage)", *spills = strstr(line, " loops, ");
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
+        if (strstr(line, stages[i].printed)) stage = stages[i].stage;
+    if (null.rows->count == MASU_ISA_ROWS) {
+        fail("too many pipelines");
+        return;
+    }
+    masu_isa_row *row = add_row(stage);
+    row->value[MASU_ISA_WAVES] = before_word(line, " threads");
+    row->value[MASU_ISA_INSTRUCTIONS] = before_word(line, " inst,");
+    row->value[MASU_ISA_CYCLES] = before_word(line, " cycles");
+    if (!spills) return;
+    char *end;
+    row->value[MASU_ISA_SPILLS] = strtod(spills + 8, &end);
+    if (*end == ':') row->value[MASU_ISA_FILLS] = strtod(end + 1, NULL);
+}
+
+/* Redirects standard error to a file; returns the descriptor to restore, or -1. */
+static int capture(FILE **file) {
+    int was = -1;
+    *file = NULL;
+    if (!is_printed() || !(*file = tmpfile())) return -1;
+    fflush(stderr);
+    was = dup(2);
+    if (was >= 0) dup2(fileno(*file), 2);
+    return was;
+}
+
+/* Restores standard error, reads statistics of the file and prints its other lines. */
+static void read_captured(int was, FILE *file) {
+    char line[1024];
+    fflush(stderr);
+    if (was >= 0) {
+        dup2(was, 2);
+        close(was);
+    }
+    if (!file) return;
+    rewind(file);
+    while (fgets(line, sizeof line, file)) {
+        if (!strncmp(line, "SHADER-DB: ", 11)) read_line(line);
+        else fputs(line, stderr);
+    }
+    fclose(file);
+}
+
+static void read_executables(VkPipeline pipeline) {
     VkPipelineInfoKHR info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
     VkPipelineExecutablePropertiesKHR list[EXECUTABLES] = {{0}};
     uint32_t n = EXECUTABLES;
@@ -82,30 +157,43 @@ static void read_pipeline(VkPipeline pipeline) {
         fail("vkGetPipelineExecutablePropertiesKHR fails");
         return;
     }
-    if (null.pipeline_count == PIPELINES || null.rows->count + n > MASU_ISA_ROWS) {
+    if (null.rows->count + n > MASU_ISA_ROWS) {
         fail("too many pipelines");
         return;
     }
-    null.pipelines[null.pipeline_count].handle = pipeline;
-    null.pipelines[null.pipeline_count].first = null.rows->count;
-    null.pipelines[null.pipeline_count++].count = n;
     for (uint32_t i = 0; i < n; i++) {
-        masu_isa_row *row = &null.rows->row[null.rows->count++];
-        snprintf(row->pipeline, sizeof row->pipeline, "(no name)");
-        snprintf(row->stage, sizeof row->stage, "%.*s", MASU_ISA_TEXT - 1, list[i].name);
+        masu_isa_row *row = add_row(list[i].name);
         row->lanes = list[i].subgroupSize;
         read_values(pipeline, i, row);
     }
 }
 
+/* Adds the rows of a pipeline; those from `first` on are its captured ones. */
+static void read_pipeline(VkPipeline pipeline, uint32_t first) {
+    if (null.pipeline_count == PIPELINES) {
+        fail("too many pipelines");
+        return;
+    }
+    if (!is_printed()) read_executables(pipeline);
+    null.pipelines[null.pipeline_count].handle = pipeline;
+    null.pipelines[null.pipeline_count].first = first;
+    null.pipelines[null.pipeline_count++].count = null.rows->count - first;
+}
+
+/* Neither gives the renderer's cache to the driver: a cached shader has no statistics. */
 static VKAPI_ATTR VkResult VKAPI_CALL create_compute(VkDevice device, VkPipelineCache cache, uint32_t n,
                                                      const VkComputePipelineCreateInfo *info,
                                                      const VkAllocationCallbacks *allocator,
                                                      VkPipeline *out) {
     VkComputePipelineCreateInfo changed = *info; /* the renderer creates one at a time */
+    uint32_t first = null.rows->count;
+    FILE *file;
+    int was = capture(&file);
+    (void)cache;
     changed.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
-    VkResult r = null.create_compute(device, cache, n, &changed, allocator, out);
-    if (!r) read_pipeline(*out);
+    VkResult r = null.create_compute(device, VK_NULL_HANDLE, n, &changed, allocator, out);
+    read_captured(was, file);
+    if (!r) read_pipeline(*out, first);
     return r;
 }
 
@@ -114,9 +202,14 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_graphics(VkDevice device, VkPipelin
                                                       const VkAllocationCallbacks *allocator,
                                                       VkPipeline *out) {
     VkGraphicsPipelineCreateInfo changed = *info;
+    uint32_t first = null.rows->count;
+    FILE *file;
+    int was = capture(&file);
+    (void)cache;
     changed.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
-    VkResult r = null.create_graphics(device, cache, n, &changed, allocator, out);
-    if (!r) read_pipeline(*out);
+    VkResult r = null.create_graphics(device, VK_NULL_HANDLE, n, &changed, allocator, out);
+    read_captured(was, file);
+    if (!r) read_pipeline(*out, first);
     return r;
 }
 

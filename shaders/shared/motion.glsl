@@ -54,6 +54,17 @@ vec2 masu_unjittered(vec2 moved, vec2 size)
     return moved + (previous.jitter.zw - frame.jitter.zw) * (0.5 * size);
 }
 
+/* The point at view depth z of the ray `through` a pixel, whose view depth is 1. step: from the
+ * point to where it was in the previous frame, 0 of a static surface. */
+vec4 masu_point_velocity(vec3 through, float z, vec3 step, vec2 size)
+{
+    precise vec3 eye_step = (frame.eye_hi.xyz - previous.eye_hi.xyz) +
+                            (frame.eye_lo.xyz - previous.eye_lo.xyz);
+    precise vec3 rel = through * z;
+    precise vec3 was = rel + (eye_step + step);
+    return masu_velocity(vec4(rel, 1.0), vec4(was, 1.0), size);
+}
+
 vec4 masu_sky_velocity(uvec2 at, uvec2 size)
 {
     vec4 direction = vec4(masu_pixel_ray(at, size), 0.0);

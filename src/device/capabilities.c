@@ -323,6 +323,13 @@ static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan,
     return computed_for;
 }
 
+/* The pass has 54 values for each thread to keep: 576 bytes or more of scratch on Mali and the
+ * Raspberry Pi, at 5.7 times the cycles of EASU a pixel on a Mali-G610 (design/15-fsr1.md). */
+static int spills_easu_twice(const VkPhysicalDeviceProperties *d) {
+    enum { ARM = 0x13B5, BROADCOM = 0x14E4 };
+    return d->vendorID == ARM || d->vendorID == BROADCOM;
+}
+
 masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
                                   const char **computed_for, masu_detail *detail) {
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
@@ -345,6 +352,7 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     if (!result) result = choose_ray_query(desc, plan, vk, detail);
     if (!result) result = choose_half_floats(desc, vk, detail);
     if (!filters_unorm16(vk)) desc->deny.unorm16 = 1;
+    if (spills_easu_twice(&vk->properties)) desc->deny.easu_twice = 1;
     if (desc->debug.share_rays == MASU_AUTO)
         desc->debug.share_rays = is_gpu(vk) ? MASU_ON : MASU_OFF;
     return result;

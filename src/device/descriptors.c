@@ -105,8 +105,8 @@ static masu_result create_global_sets(masu_device *m, uint32_t pass, masu_detail
     return MASU_OK;
 }
 
-/* An unused texture slot gets another slot's texture, and so does the last one, that of live
- * textures. The shader does not sample it, but every binding of a set must be valid. */
+/* An unused texture slot gets another slot's texture. So does the last slot, for live textures, if
+ * the plan has none. The shader does not sample it, but every binding of a set must be valid. */
 static masu_result create_texture_sets(masu_device *m, masu_detail *detail) {
     masu_scene_view v = {0};
     if (m->plan->scene.texture_sets) v = masu_scene_data_view(&m->plan->scene);

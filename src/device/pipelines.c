@@ -106,8 +106,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[24] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
                     (scene->depth_biases ? MASU_DRAWS_BIASES : 0u);
     constants[25] = m->plan->desc.live_environment != 0;
-    return (VkSpecializationInfo){MASU_SPECIAL_COUNT, entries, MASU_SPECIAL_COUNT * sizeof *constants,
-                                  constants};
+    return (VkSpecializationInfo){MASU_SPECIAL_COUNT, entries,
+                                  MASU_SPECIAL_COUNT * sizeof *constants, constants};
 }
 
 /* Key of a pipeline in the pool; 0 without a pool. */

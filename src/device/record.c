@@ -381,7 +381,8 @@ static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets)
             record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES],
                            MASU_SPRITE_DRAWS + k);
         if (among || tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], tints);
-        push.instances = (uint32_t)m->plan->drawn.transparents + masu_transparent_words(m->plan) * k;
+        push.instances =
+            (uint32_t)m->plan->drawn.transparents + masu_transparent_words(m->plan) * k;
         memcpy(&block.own, &push, sizeof push);
         vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         draw_slot(rec, at, k == 0 || among);

@@ -24,9 +24,9 @@ masu_result masu_record_begin(masu_device *m, masu_detail *detail);
 masu_result masu_record_rung(masu_device *m, const masu_draws *draws, uint32_t rung,
                              masu_detail *detail);
 
-/* Discards all frame recordings, of which none may be pending, and records those of one rung, if it
- * is ready, for the current plan and targets. masu_record_missing records the others, also those missing after a
- * failure. */
+/* Discards all frame recordings, of which none may be pending, and records those of one rung, if
+ * it is ready, for the current plan and targets. masu_record_missing records the others, also
+ * those missing after a failure. */
 masu_result masu_record_again(masu_device *m, const masu_draws *draws, uint32_t rung,
                               masu_detail *detail);
 

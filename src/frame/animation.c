@@ -40,7 +40,7 @@ void masu_pose_rows(const masu_node_pose *pose, float rows[12]) {
     }
 }
 
-/* Of a rotation's nine numbers: by the largest component, so that nothing small is divided by. */
+/* From a rotation matrix: by the largest component, so that no division is by a small number. */
 static void quaternion_of(double r[3][3], double q[4]) {
     double trace = r[0][0] + r[1][1] + r[2][2];
     uint32_t i = r[1][1] > r[0][0] ? 1 : 0;
@@ -189,7 +189,7 @@ static void sample(const masu_blob_key *keys, const masu_blob_channel *c, double
         to[i] = (1.0 - share) * (double)from->value[i] + share * (double)next->value[i];
 }
 
-/* Adds a share of a pose; rotations on the side of what is there. */
+/* Adds a weighted pose; rotations in the hemisphere of the sum. */
 static void add(masu_node_pose *sum, const masu_node_pose *pose, double share) {
     double dot = 0.0;
     for (uint32_t k = 0; k < 4; k++) dot += sum->rotation[k] * pose->rotation[k];
@@ -210,7 +210,8 @@ static void add_use(masu_animation *a, const masu_clip *clip, const masu_clip_us
         if (!a->moved[first_node + n]) continue;
         pose = a->rest[first_node + n];
         for (; c < end && a->channels[c].node <= n; c++) {
-            if (a->channels[c].path != MASU_CHANNEL_WEIGHT) sample(a->keys, &a->channels[c], t, &pose);
+            if (a->channels[c].path != MASU_CHANNEL_WEIGHT)
+                sample(a->keys, &a->channels[c], t, &pose);
         }
         add(&a->poses[n], &pose, share);
     }
@@ -238,8 +239,9 @@ void masu_animation_pose(masu_animation *a, uint32_t first_clip, const masu_clip
     }
 }
 
-double masu_animation_weight(const masu_animation *a, uint32_t first_clip, const masu_clip_use *uses,
-                             uint32_t count, uint32_t node, uint32_t target, double rest) {
+double masu_animation_weight(const masu_animation *a, uint32_t first_clip,
+                             const masu_clip_use *uses, uint32_t count, uint32_t node,
+                             uint32_t target, double rest) {
     double whole = 0.0, sum = 0.0;
     for (uint32_t i = 0; i < count; i++) whole += (double)uses[i].weight;
     for (uint32_t i = 0; i < count && whole > 0.0; i++) {
@@ -247,7 +249,9 @@ double masu_animation_weight(const masu_animation *a, uint32_t first_clip, const
         const masu_blob_key *from, *next;
         for (uint32_t c = clip->first_channel; c < clip->first_channel + clip->channel_count; c++) {
             const masu_blob_channel *channel = &a->channels[c];
-            if (channel->path != MASU_CHANNEL_WEIGHT || channel->node != node || channel->target != target) continue;
+            if (channel->path != MASU_CHANNEL_WEIGHT || channel->node != node ||
+                channel->target != target)
+                continue;
             double share = around(a->keys, channel, time_in(clip, &uses[i]), &from, &next);
             double value = (1.0 - share) * (double)from->value[0] + share * (double)next->value[0];
             sum += (value - rest) * ((double)uses[i].weight / whole);

@@ -7,14 +7,15 @@
 #include <string.h>
 
 _Static_assert(MASU_BOUNCE_WINDOW == MASU_BOUNCE_SETS, "sets of a live probe");
-_Static_assert(MASU_PROBE_LIVE_WORDS == MASU_PROBE_LIT_WORDS + MASU_BOUNCE_SETS * MASU_PROBE_WORDS, "a live probe");
+_Static_assert(MASU_PROBE_LIVE_WORDS == MASU_PROBE_LIT_WORDS + MASU_BOUNCE_SETS * MASU_PROBE_WORDS,
+               "a live probe");
 
 void masu_bounce_alloc(masu_bounce *b, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->needs.bounce ? plan->scene.probes : 0;
     b->probes = masu_arena_alloc(arena, "live probes", count, sizeof *b->probes, 1);
 }
 
-/* The last half of a probe's first set says how far it is to be believed. */
+/* The last half of a probe's first set holds the validity of the probe. */
 void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const masu_scene_view *v) {
     if (!plan->needs.bounce) return;
     const masu_blob_probes *p = v->probes;
@@ -38,7 +39,7 @@ void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const m
     masu_bounce_restart(b);
 }
 
-/* ---- Whose turn it is ------------------------------------------------------------------------ */
+/* ---- Order of the probes --------------------------------------------------------------------- */
 
 static void next_round(masu_bounce *b) {
     b->round++;
@@ -60,10 +61,11 @@ void masu_bounce_restart(masu_bounce *b) {
     }
 }
 
-/* The next set of a probe: the first ones twice, since their first light lacks later bounces; then the others; then
- * all around. *count: how many of its sets count, with this one. */
+/* The next set of a probe: the first ones twice, since their first light lacks later bounces;
+ * then the others; then all around. *count: how many of its sets count, with this one. */
 static uint32_t next_set(struct masu_bounce_probe *p, uint32_t *count) {
-    const uint32_t twice = 2 * MASU_BOUNCE_FIRST, all = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW, at = p->sets++;
+    const uint32_t twice = 2 * MASU_BOUNCE_FIRST, all = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW,
+                   at = p->sets++;
     if (p->sets == all + MASU_BOUNCE_WINDOW) p->sets = all;
     *count = at < MASU_BOUNCE_FIRST ? at + 1 : MASU_BOUNCE_FIRST;
     if (at < twice) return at % MASU_BOUNCE_FIRST;
@@ -71,9 +73,10 @@ static uint32_t next_set(struct masu_bounce_probe *p, uint32_t *count) {
     return at < all ? at - MASU_BOUNCE_FIRST : at - all;
 }
 
-/* Whether a probe is within two cells of the eye, or in view, or nearly so. */
+/* Whether a probe is within two cells of the camera, or in or close to its view. */
 static int is_seen(const masu_bounce *b, const masu_bounce_view *view, uint32_t i) {
-    const uint32_t at[3] = {i % b->counts[0], i / b->counts[0] % b->counts[1], i / b->counts[0] / b->counts[1]};
+    const uint32_t at[3] = {i % b->counts[0], i / b->counts[0] % b->counts[1],
+                            i / b->counts[0] / b->counts[1]};
     double to[3], cells = 0.0;
     for (uint32_t k = 0; k < 3; k++) {
         to[k] = (double)b->origin[k] + at[k] * (double)b->spacing[k] - view->eye[k];
@@ -89,7 +92,8 @@ static int is_seen(const masu_bounce *b, const masu_bounce_view *view, uint32_t 
     return clip[3] > 0.0 && fabs(clip[0]) <= 1.2 * clip[3] && fabs(clip[1]) <= 1.2 * clip[3];
 }
 
-uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most, uint32_t *words) {
+uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most,
+                            uint32_t *words) {
     uint32_t count = 0;
     if (!b->valid || b->quiet >= MASU_BOUNCE_REST) return 0;
     for (int rest = view ? 0 : 1; rest < 2 && count < most; rest++) {
@@ -112,10 +116,11 @@ uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32
     return count;
 }
 
-/* ---- What has changed ------------------------------------------------------------------------ */
+/* ---- Changes --------------------------------------------------------------------------------- */
 
-static masu_bounce_cause cause_of(const masu_bounce *b, const masu_lights *lights, const masu_instances *in,
-                                  const masu_materials *materials, const masu_frame_data *f) {
+static masu_bounce_cause cause_of(const masu_bounce *b, const masu_lights *lights,
+                                  const masu_instances *in, const masu_materials *materials,
+                                  const masu_frame_data *f) {
     masu_bounce_cause c;
     const struct masu_frame_uniforms *u = &f->u;
     memset(&c, 0, sizeof c);
@@ -157,7 +162,8 @@ void masu_bounce_write(masu_bounce *b, const masu_lights *lights, const masu_ins
     masu_bounce_view view = {f->u.clip_from_rel, {f->eye[0], f->eye[1], f->eye[2]}};
     uint32_t *words = (uint32_t *)(void *)(to + sizeof(struct masu_bounce_header));
     uint32_t probes = masu_bounce_choose(b, &view, most, words), rays = probes * rung->bounce_rays;
-    const struct masu_bounce_header header = {{(rays + 63) / 64, 1, 1, rays}, {probes, 1, 1, rung->bounce_rays}};
+    const struct masu_bounce_header header = {{(rays + 63) / 64, 1, 1, rays},
+                                              {probes, 1, 1, rung->bounce_rays}};
     memcpy(to, &header, sizeof header);
     b->slot_left[f->slot] = b->valid ? MASU_BOUNCE_REST - b->quiet : 0;
 }

@@ -1,9 +1,10 @@
-/* bounce.h: which live probes trace rays in a frame. A round is over when every probe has had its turn; what is
- * in view comes first in each. A change of what light meets restarts the sets of all probes, so that none shows
- * a mean with what was; while changes follow each other within FIRST rounds, a window of the FIRST sets slides
- * instead. After REST rounds without a change no probe traces, and the probes keep their bits.
+/* bounce.h: chooses the live probes that trace rays in a frame. In a round every probe traces one
+ * set of rays, visible probes first. A change of lights or geometry restarts the sets of all
+ * probes, so that no probe averages old and new light; while changes follow each other within FIRST
+ * rounds, a sliding window of FIRST sets is used instead. After REST rounds without a change no
+ * probe traces, and the probes keep their values.
  *
- * All of it follows from what frames have asked for so far: nothing is read back. */
+ * The state depends on the host's calls only: nothing is read back. */
 #ifndef MASU_BOUNCE_H
 #define MASU_BOUNCE_H
 
@@ -17,12 +18,14 @@ enum {
     MASU_BOUNCE_FIRST = 4,   /* sets of a probe that are shown soon after a change */
     MASU_BOUNCE_WINDOW = 16, /* all sets of a probe */
     MASU_BOUNCE_REST = 256,  /* rounds */
-    MASU_BOUNCE_BURST_ROUNDS = 16, /* after the first frame, or a cut: most of what bounces has come by then */
-    MASU_BOUNCE_SWIFT_ROUNDS = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW, /* after a change that follows no other */
+    /* after the first frame, or a cut: most of what bounces has come by then */
+    MASU_BOUNCE_BURST_ROUNDS = 16,
+    /* after a change that follows no other */
+    MASU_BOUNCE_SWIFT_ROUNDS = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW,
     MASU_BOUNCE_OFF = 0xFF  /* `sets` of a probe that is inside of something */
 };
 
-/* What light meets, as far as the host can change it. */
+/* Inputs of the light that the host can change. */
 typedef struct masu_bounce_cause {
     uint32_t lights, instances, materials;
     float sun[2][3], sky[15][4], params[MASU_SDF_PARAM_VEC4S][4], time;
@@ -37,7 +40,7 @@ typedef struct masu_bounce {
     uint32_t counts[3];
     float origin[3], spacing[3];
     int lit;        /* the probes have baked light: sun and sky are no cause */
-    uint32_t round; /* the present one; its low byte tells rounds apart */
+    uint32_t round; /* the present one; its low byte distinguishes rounds */
     uint32_t left;  /* probes that it lacks */
     uint32_t quiet; /* whole rounds since the last change */
     uint32_t burst, swift; /* rounds that still have four times, twice the rays */
@@ -56,12 +59,13 @@ void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const m
 
 /* Something has changed. */
 void masu_bounce_restart(masu_bounce *b);
-/* At most `most` probes as words of shared/bounce.h; returns how many. */
+/* Chooses at most `most` probes, encoded as in shared/bounce.h; returns their number. */
 /* Probes of the next frame, of `most` in a burst. */
 uint32_t masu_bounce_pace(const masu_bounce *b, uint32_t most);
-uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most, uint32_t *words);
+uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most,
+                            uint32_t *words);
 
-/* Restarts if what light meets differs from the frame before. */
+/* Restarts if the inputs of light differ from the previous frame. */
 void masu_bounce_follow(masu_bounce *b, const masu_lights *lights, const masu_instances *in,
                         const masu_materials *materials, const masu_frame_data *f);
 /* masu_bounce_follow, then writes the frame's slot. */

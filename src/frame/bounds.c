@@ -15,8 +15,8 @@ void masu_bounds_alloc(masu_bounds *b, masu_arena *arena, const masu_frame_plan 
     b->moved = masu_arena_alloc(arena, "moved boxes", s->instances, sizeof *b->moved, 4);
 }
 
-/* It only grows: where an instance was it may come again, and a smaller one would gain nothing but a
- * depth scale of the shadow map that changes. */
+/* It only grows: where an instance was it may come again, and a smaller one would gain nothing
+ * but a depth scale of the shadow map that changes. */
 static void sweep(masu_bounds *b, const masu_cull_box *box) {
     for (uint32_t k = 0; k < 3; k++) {
         double low = (double)box->center[k] - (double)box->half[k];
@@ -86,16 +86,18 @@ void masu_bounds_copy_scene(masu_bounds *b, const masu_frame_plan *plan, const m
         set_box(b, in, p, b->items[p]);
     }
     b->initial = around_all(b, in->own);
-    for (uint32_t p = in->own; p < scene->instances; p++) { /* of the reserve: a point, until it is added */
+    /* of the reserve: a point, until it is added */
+    for (uint32_t p = in->own; p < scene->instances; p++) {
         b->items[p] = b->positions[p] = p;
         for (uint32_t k = 0; k < 6; k++) b->boxes[k * b->box_stride + p] = 0.0f;
     }
 }
 
-/* Once it has moved, an instance is tested by itself: groups keep the boxes they were baked with. */
+/* Once it has moved, an instance is tested by itself: groups keep the boxes they were baked
+ * with. */
 void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
                       uint32_t instance) {
-    uint32_t position = b->positions[instance] & ~MASU_BOX_MOVED;
+    uint32_t position = masu_bounds_position(b, instance);
     set_box(b, in, position, instance);
     if (position >= plan->scene.group_items || b->positions[instance] & MASU_BOX_MOVED) return;
     b->positions[instance] |= MASU_BOX_MOVED;
@@ -103,7 +105,7 @@ void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_in
 }
 
 void masu_bounds_of(const masu_bounds *b, uint32_t instance, float box[6]) {
-    uint32_t position = b->positions[instance] & ~MASU_BOX_MOVED;
+    uint32_t position = masu_bounds_position(b, instance);
     for (uint32_t k = 0; k < 6; k++) box[k] = b->boxes[k * b->box_stride + position];
 }
 

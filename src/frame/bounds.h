@@ -1,12 +1,13 @@
-/* bounds.h: world boxes of instances, and of the groups that the scene sorts them into, as culling, shadow
- * and LODs ask for them. Positions are those of src/scene/cull.h. */
+/* bounds.h: world-space boxes of instances and of their culling groups, for culling, shadows and
+ * LODs. Positions are indices into the order of src/scene/cull.h. */
 #ifndef MASU_BOUNDS_H
 #define MASU_BOUNDS_H
 
 #include "frame/instances.h"
 #include "scene/cull.h"
 
-#define MASU_BOX_MOVED 0x80000000u /* in positions: the tree no longer knows the box */
+/* in positions: the instance has moved, so the tree's bounds do not include it */
+#define MASU_BOX_MOVED 0x80000000u
 #define MASU_BOX_PADDING 3u        /* floats that SIMD may read behind the last box */
 
 typedef struct masu_bounds {
@@ -18,8 +19,8 @@ typedef struct masu_bounds {
     uint32_t *moved;     /* positions */
     uint32_t moved_count;
     float (*meshes)[6];    /* low, high */
-    masu_cull_box initial; /* around all instances as the scene places them */
-    double swept[2][3];    /* a box around all of them, wherever they have been */
+    masu_cull_box initial; /* around all instances at their initial transforms */
+    double swept[2][3];    /* around every position of every instance so far */
 } masu_bounds;
 
 void masu_bounds_alloc(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan);
@@ -28,6 +29,11 @@ void masu_bounds_copy_scene(masu_bounds *b, const masu_frame_plan *plan, const m
 /* After a transform has changed. */
 void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
                       uint32_t instance);
+
+/* Index of an instance's box. */
+static inline uint32_t masu_bounds_position(const masu_bounds *b, uint32_t instance) {
+    return b->positions[instance] & ~MASU_BOX_MOVED;
+}
 
 /* Middle and half size of an instance's box. */
 void masu_bounds_of(const masu_bounds *b, uint32_t instance, float box[6]);

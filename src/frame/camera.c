@@ -42,8 +42,8 @@ masu_result masu_camera_path_at(const masu_camera_path *path, const masu_frame_p
         out->forward[i] = (float)(target - out->position[i]);
     }
     out->fov_y = (float)((double)a->fov_y + ((double)b->fov_y - (double)a->fov_y) * u);
-    /* Two keys whose positions and targets cross over meet in a point half-way: look along the
-     * first key's. */
+    /* Two keys whose positions and targets cross over coincide half-way: use the first key's
+     * direction. */
     float ignored[3];
     if (!masu_unit(out->forward, ignored)) {
         for (uint32_t i = 0; i < 3; i++) out->forward[i] = a->target[i] - a->position[i];
@@ -55,8 +55,8 @@ masu_result masu_camera_path_at(const masu_camera_path *path, const masu_frame_p
 
 static masu_result bad_direction(masu_detail *detail, const char *what, const float v[3],
                                  const char *needed) {
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is (%g, %g, %g), needed is %s", what,
-                     (double)v[0], (double)v[1], (double)v[2], needed);
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is (%g, %g, %g), needed is %s",
+                     what, (double)v[0], (double)v[1], (double)v[2], needed);
 }
 
 /* Orthonormal: right, up, forward. */
@@ -80,7 +80,7 @@ static masu_result find_axes(const masu_camera *c, float right[3], float up[3], 
             return bad_direction(detail, "camera.up", c->up,
                                  "a direction that is not parallel to camera.forward");
         }
-        /* Looking straight up or down without an up of one's own: any right-hand side will do. */
+        /* Straight up or down without an up vector: any right vector is valid. */
         right[0] = 1.0f, right[1] = right[2] = 0.0f;
     }
     masu_cross(right, forward, up);
@@ -91,7 +91,7 @@ static int has_window(const masu_camera *c) {
     return c->left != 0.0f || c->right != 0.0f || c->bottom != 0.0f || c->top != 0.0f;
 }
 
-/* Two sides of a window. That they are not nearer to each other than that keeps the middle in pixels exact. */
+/* Two sides of a window. The minimum distance keeps the centre in pixels exact. */
 static masu_result check_sides(const char *low_name, double low, const char *high_name, double high,
                                masu_detail *detail) {
     const char *name[2] = {low_name, high_name};
@@ -103,10 +103,11 @@ static masu_result check_sides(const char *low_name, double low, const char *hig
     double apart = fmax(1e-4, fmax(fabs(low), fabs(high)) / 1024.0);
     if (high - low >= apart) return MASU_OK;
     return masu_fail(detail, MASU_ERROR_ARGUMENT, high_name, 0, 0,
-                     "%s is %g, needed is %s (%g) + %g or more", high_name, high, low_name, low, apart);
+                     "%s is %g, needed is %s (%g) + %g or more", high_name, high, low_name, low,
+                     apart);
 }
 
-/* What is no direction; near_distance with its default. */
+/* Checks lens values; near_distance: the default. */
 static masu_result check_lens(const masu_camera *c, float near_distance, masu_detail *detail) {
     if (!(near_distance >= 1e-9f && near_distance <= 1e9f)) {
         return masu_fail_number(detail, "camera.near_distance", (double)near_distance,
@@ -115,7 +116,9 @@ static masu_result check_lens(const masu_camera *c, float near_distance, masu_de
     if (has_window(c)) {
         masu_result result = check_sides("camera.left", (double)c->left, "camera.right",
                                          (double)c->right, detail);
-        if (!result) result = check_sides("camera.bottom", (double)c->bottom, "camera.top", (double)c->top, detail);
+        if (!result)
+            result = check_sides("camera.bottom", (double)c->bottom, "camera.top", (double)c->top,
+                                 detail);
         if (result) return result;
     }
     if (has_window(c) ? !isfinite(c->fov_y) : !(c->fov_y >= 0.0005f && c->fov_y <= 3.1f))
@@ -128,7 +131,7 @@ static masu_result check_lens(const masu_camera *c, float near_distance, masu_de
     return MASU_OK;
 }
 
-/* Half of the window's sides, and where its middle is, in units of those: right and down. */
+/* Half of the window's width and height, and the centre in units of those: right and down. */
 typedef struct lens {
     double half[2];
     double middle[2];
@@ -140,7 +143,8 @@ static lens lens_of(const masu_camera *c, const masu_frame_data *f) {
     l.half[1] = tan((double)c->fov_y * 0.5);
     l.half[0] = l.half[1] * (double)shown.width / (double)shown.height;
     if (!has_window(c)) return l;
-    double left = (double)c->left, right = (double)c->right, bottom = (double)c->bottom, top = (double)c->top;
+    double left = (double)c->left, right = (double)c->right, bottom = (double)c->bottom,
+           top = (double)c->top;
     l.half[0] = 0.5 * (right - left);
     l.half[1] = 0.5 * (top - bottom);
     l.middle[0] = (right + left) / (right - left);
@@ -167,8 +171,8 @@ static void project(const masu_camera *c, const float right[3], const float up[3
         u->right[i] = (float)((double)right[i] * tan_x);
         u->up[i] = (float)((double)up[i] * tan_y);
         u->forward[i] = forward[i];
-        /* Reverse-Z with an infinite far plane: depth = near / view z, so that fp32 resolution is
-         * relative at any distance (view z comes back as near / depth). Vulkan's clip y points
+        /* Reverse-Z with an infinite far plane: depth = near / view z, so that fp32 resolution
+         * is relative at any distance (near / depth gives view z again). Vulkan's clip y points
          * down. */
         u->clip_from_rel[i * 4 + 0] =
             (float)((double)right[i] / tan_x - (double)u->jitter[0] * (double)forward[i]);
@@ -182,7 +186,7 @@ static void project(const masu_camera *c, const float right[3], const float up[3
     u->forward[3] = near_distance;
 }
 
-/* Shaders compare the eye with probes in world space, and shadow faces with the SDF's space. */
+/* Shaders compare the camera with probes in world space, and shadow faces with the SDF's space. */
 static int has_origin(const masu_frame_plan *plan) {
     return plan->desc.double_positions && !plan->scene.probes && !plan->needs.bounce &&
            !(plan->needs.local_shadows && plan->needs.sdf);

@@ -1,4 +1,5 @@
-/* camera.h: the camera of a frame, the host's or a point of the scene's path, and the projection. */
+/* camera.h: the camera of a frame, the host's or a point of the scene's path, and the
+ * projection. */
 #ifndef MASU_CAMERA_H
 #define MASU_CAMERA_H
 
@@ -6,7 +7,7 @@
 #include "scene/blob_section.h"
 
 typedef struct masu_camera_path {
-    masu_blob_camera_key *keys; /* plan->scene.camera_keys of them */
+    masu_blob_camera_key *keys; /* [plan->scene.camera_keys] */
     float near_distance;        /* of cameras that have none */
 } masu_camera_path;
 

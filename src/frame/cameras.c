@@ -11,9 +11,9 @@ int masu_view_draws(const masu_frame_data *f, uint32_t view) {
     return !view || !f->plan->needs.shadow || (f->cascades >> (view - 1) & 1u);
 }
 
-/* A box along the sun's direction, which is its last axis. It reaches from the centre `half` across it,
- * `behind` away from the sun and `ahead` towards it: how far that is may be more than the position
- * of a middle could bear. */
+/* A box along the sun's direction, which is its last axis. It reaches from the centre `half`
+ * across it, `behind` away from the sun and `ahead` towards it: how far that is may be more than
+ * the position of a middle could bear. */
 typedef struct sun_box {
     double axis[3][3], center[3], half[2], behind, ahead;
 } sun_box;
@@ -22,7 +22,7 @@ static double along(const double axis[3], const double p[3]) {
     return axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
 }
 
-/* All of the scene as it was baked. */
+/* The whole scene with its initial transforms. */
 static sun_box around_scene(const masu_cull_box *scene, const float sun[3]) {
     sun_box b;
     double towards[3], half[3] = {1e-6, 1e-6, 1e-6};
@@ -68,7 +68,7 @@ static sun_box around_both(const sun_box *a, const sun_box *b) {
     return both;
 }
 
-/* Its planes, but for the one on the side of the sun: nothing there may be left out. */
+/* The box's planes except the one towards the sun: casters may be at any distance there. */
 static void set_box_planes(const sun_box *b, masu_cull_view *view) {
     view->count = 0;
     for (uint32_t plane = 0; plane < 5; plane++) {
@@ -81,8 +81,8 @@ static void set_box_planes(const sun_box *b, masu_cull_view *view) {
 
 /* ---- Casters that matter --------------------------------------------------------------------- */
 
-/* Where the picture ends, seen from the sun: the eye and the corners of the picture at the depth where
- * shadows end, in metres across the sun's direction from a box's centre. */
+/* Light-space outline of the view: the camera and the image corners at the depth where shadows
+ * end, in metres across the sun's direction from a box's centre. */
 typedef struct outline {
     double at[5][2];
 } outline;
@@ -104,8 +104,8 @@ static outline outline_of(const sun_box *b, double depth, const masu_frame_data 
     return o;
 }
 
-/* How far the box reaches out of the half-plane on the left of i -> j, which holds the whole outline; or
- * below 0 where it does not. n: the inside normal. */
+/* How far the box reaches outside of the half-plane on the left of i -> j, which contains the
+ * whole outline; negative if it does not contain it. n: the inside normal. */
 static double cut_of(const outline *o, uint32_t i, uint32_t j, const sun_box *b, double n[2]) {
     double x = o->at[j][0] - o->at[i][0], y = o->at[j][1] - o->at[i][1],
            length = sqrt(x * x + y * y);
@@ -120,9 +120,9 @@ static double cut_of(const outline *o, uint32_t i, uint32_t j, const sun_box *b,
     return edge + fabs(n[0]) * b->half[0] + fabs(n[1]) * b->half[1];
 }
 
-/* What casts no shadow into the picture need not be in a map that this frame alone looks at: of the
- * outline the two edges that take most of the box away become planes, widened by `margin` metres. The
- * box stays as it is: it is what the map holds. */
+/* A map that only this frame reads may omit casters whose shadows are outside of the image: the
+ * two edges of the outline that cut most of the box become planes, widened by `margin` metres.
+ * The box is unchanged, because it describes the map. */
 static void add_outline(const outline *o, const sun_box *b, double margin, masu_cull_view *view) {
     double most[2] = {margin, margin}, normal[2][2] = {{0, 0}, {0, 0}}, from[2] = {0, 0};
     for (uint32_t edge = 0; edge < 25; edge++) {
@@ -167,7 +167,7 @@ static void set_atlas(masu_occlusion_view *v, uint32_t part) {
     v->atlas[3] = (float)area.extent.height;
 }
 
-/* Where each cascade, or all of the scene, lies along the sun, and its planes. */
+/* Sets the light-space boxes and planes of each cascade, or of the whole scene. */
 static void set_sun_boxes(masu_views *v, const masu_bounds *bounds, const masu_shadow *s,
                           const masu_frame_data *f, sun_box boxes[MASU_CASCADES_MAX]) {
     int shadow = f->plan->needs.shadow;
@@ -183,9 +183,9 @@ static void set_sun_boxes(masu_views *v, const masu_bounds *bounds, const masu_s
     }
 }
 
-/* The sun's views share one part of the atlas, a square around all that this frame draws. Cascades
- * lie inside of each other, so that what hides something in the part hides it in each of them; but a
- * cascade moves surfaces away from the sun, and so a mesh may be a little behind its occluder. */
+/* The cascades share one part of the atlas, a square around all casters of this frame. Cascades
+ * are nested, so an occluder in the part is an occluder in each of them; but a cascade biases
+ * surfaces away from the sun, and so a mesh may be slightly behind its occluder. */
 static void set_suns(masu_views *v, const masu_bounds *bounds, const masu_shadow *s,
                      const masu_frame_data *f, float step) {
     sun_box boxes[MASU_CASCADES_MAX], all;

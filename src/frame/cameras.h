@@ -9,11 +9,11 @@
 /* What LODs are chosen by: lod.h. */
 typedef struct masu_lod_view {
     double eye[3], forward[3];
-    double widest; /* cosine of the angle from the middle of the picture to its corners */
+    double widest; /* cosine of the angle between the view direction and the image corners */
     float pixels, threshold;
 } masu_lod_view;
 
-/* What occlusion culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
+/* Occlusion culling parameters of a view in the GPU's layout: MASU_CULL_VIEW_*. */
 typedef struct masu_occlusion_view {
     float clip[16], eye[4], atlas[4], near_distance, margin, blind, bias;
     uint32_t turn, trimmed;

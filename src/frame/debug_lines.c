@@ -1,5 +1,6 @@
-/* debug_lines.c: debug lines to the slot, as two places in the picture: cut off at the near plane and at the picture's sides in
- * double, so that nothing of them is beyond what a float holds, and 1 / depth is linear between them. */
+/* debug_lines.c: writes debug lines to the slot as two image positions each. Lines are clipped
+ * in double at the near plane and at the image edges, so that all values fit into a float and 1
+ * / depth is linear between the ends. */
 #include "frame/sprite_kinds.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ static void inside(const masu_sprite_eye *e, const double p[3], double out[SIDES
     out[4] = p[2] * e->tan_y + p[1];
 }
 
-/* The part from t[0] to t[1] that is seen; 0: none. */
+/* The visible part from t[0] to t[1]; returns 0 if there is none. */
 static int clip(const masu_sprite_eye *e, const double a[3], const double b[3], double t[2]) {
     double from[SIDES], to[SIDES];
     inside(e, a, from);
@@ -37,13 +38,14 @@ static int is_fine(const masu_line *l) {
     return fine;
 }
 
-static void write_end(const masu_line *l, const masu_sprite_eye *e, const double a[3], const double b[3], double t,
-                      float out[4]) {
+static void write_end(const masu_line *l, const masu_sprite_eye *e, const double a[3],
+                      const double b[3], double t, float out[4]) {
     double p[3];
     uint32_t word = (l->flags & MASU_LINE_ON_TOP) << 24;
     for (uint32_t k = 0; k < 3; k++) {
         p[k] = a[k] + (b[k] - a[k]) * t;
-        double c = (double)l->from_color[k] + ((double)l->to_color[k] - (double)l->from_color[k]) * t;
+        double c =
+            (double)l->from_color[k] + ((double)l->to_color[k] - (double)l->from_color[k]) * t;
         word |= (uint32_t)(c + 0.5) << 8 * k;
     }
     double z = fmax(p[2], e->near_distance);
@@ -53,7 +55,8 @@ static void write_end(const masu_line *l, const masu_sprite_eye *e, const double
     memcpy(&out[3], &word, sizeof word);
 }
 
-uint32_t masu_debug_lines_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to) {
+uint32_t masu_debug_lines_write(const masu_frame_data *f, const masu_sprite_eye *eye,
+                                unsigned char *to) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < f->desc.line_count; i++) {
         const masu_line *l = &f->desc.lines[i];

@@ -1,13 +1,13 @@
-/* decals.c: decals to the slot: for each the way from relative to the eye into its box, and the rectangle of pixels
- * that the box may be seen in, by which decals.comp sorts them out. One that the camera does not see is left out.
- * The rectangle is that of the box's corners, two pixels wider for jitter and rounding; of a box that reaches through the
- * near plane it is the whole picture. */
+/* decals.c: writes decals to the slot: the matrix from camera-relative positions to the decal's
+ * volume, and the pixel rectangle of the volume, by which decals.comp sorts them into tiles.
+ * Invisible decals are culled. The rectangle contains the volume's corners and two more pixels
+ * for jitter and rounding; it is the whole image if the volume crosses the near plane. */
 #include "frame/sprite_kinds.h"
 
 #include <math.h>
 #include <string.h>
 
-static const double most = 1e30; /* of what the shader multiplies */
+static const double most = 1e30; /* bound of the shader's factors */
 
 /* rows of the inverse; 0: there is none that can be used. */
 static int invert(const float rows[12], double out[3][3]) {
@@ -33,18 +33,19 @@ static int invert(const float rows[12], double out[3][3]) {
 }
 
 static int is_fine(const masu_decal *d) {
-    int fine = isfinite(d->opacity) && isfinite(d->roughness) && isfinite(d->metallic) && isfinite(d->edge) &&
-               isfinite(d->inner) && isfinite(d->outer) && d->opacity > 0.0f;
+    int fine = isfinite(d->opacity) && isfinite(d->roughness) && isfinite(d->metallic) &&
+               isfinite(d->edge) && isfinite(d->inner) && isfinite(d->outer) && d->opacity > 0.0f;
     for (uint32_t k = 0; k < 12; k++) fine &= isfinite(d->rows[k]) != 0;
     fine &= isfinite(d->emission) != 0;
     if (d->texture) fine &= masu_is_cell(d->uv);
-    for (uint32_t k = 0; k < 3; k++) fine &= isfinite(d->color[k]) != 0 && isfinite(d->position[k]) != 0;
+    for (uint32_t k = 0; k < 3; k++)
+        fine &= isfinite(d->color[k]) != 0 && isfinite(d->position[k]) != 0;
     return fine;
 }
 
 /* First and last pixel that it may touch; 0: the camera does not see it. */
-static int find_pixels(const masu_decal *d, const masu_sprite_eye *eye, const uint32_t size[2], uint32_t low[2],
-                       uint32_t high[2]) {
+static int find_pixels(const masu_decal *d, const masu_sprite_eye *eye, const uint32_t size[2],
+                       uint32_t low[2], uint32_t high[2]) {
     double least[2] = {HUGE_VAL, HUGE_VAL}, greatest[2] = {-HUGE_VAL, -HUGE_VAL};
     uint32_t before = 0;
     for (uint32_t corner = 0; corner < 8; corner++) {
@@ -66,7 +67,8 @@ static int find_pixels(const masu_decal *d, const masu_sprite_eye *eye, const ui
     }
     if (!before) return 0;
     for (uint32_t k = 0; k < 2; k++) {
-        double from = before < 8 ? 0.0 : floor(least[k] - 2.0), to = before < 8 ? size[k] : ceil(greatest[k] + 2.0);
+        double from = before < 8 ? 0.0 : floor(least[k] - 2.0),
+               to = before < 8 ? size[k] : ceil(greatest[k] + 2.0);
         if (!(to >= 0.0 && from < size[k])) return 0;
         low[k] = from > 0.0 ? (uint32_t)from : 0;
         high[k] = to < size[k] - 1.0 ? (uint32_t)to : size[k] - 1;
@@ -75,8 +77,9 @@ static int find_pixels(const masu_decal *d, const masu_sprite_eye *eye, const ui
 }
 
 /* low, high: its pixels. */
-static void write_decal(const masu_decal *d, const masu_sprite_eye *eye, double into[3][3], const uint32_t low[2],
-                        const uint32_t high[2], uint32_t bytes, unsigned char *to) {
+static void write_decal(const masu_decal *d, const masu_sprite_eye *eye, double into[3][3],
+                        const uint32_t low[2], const uint32_t high[2], uint32_t bytes,
+                        unsigned char *to) {
     float v[4 * MASU_TEXTURED_DECAL_VEC4S] = {0};
     float inner = d->inner, outer = d->outer;
     uint32_t flags = d->flags & (MASU_DECAL_ROUND | MASU_DECAL_KEEP_COLOR), ends[2];
@@ -123,7 +126,8 @@ uint32_t masu_decals_write(const masu_frame_data *f, const masu_sprite_eye *eye,
         const masu_decal *d = &f->desc.decals[i];
         uint32_t low[2], high[2];
         double into[3][3];
-        if (!is_fine(d) || !invert(d->rows, into) || !find_pixels(d, eye, size, low, high)) continue;
+        if (!is_fine(d) || !invert(d->rows, into) || !find_pixels(d, eye, size, low, high))
+            continue;
         write_decal(d, eye, into, low, high, bytes, to + (size_t)count++ * bytes);
         for (uint32_t k = 0; k < 2; k++) {
             if (least[k] > low[k]) least[k] = low[k];

@@ -23,7 +23,8 @@ masu_frame_data masu_frame_begin(const masu_frame_plan *plan, const masu_device 
     f.desc = *desc;
     f.number = timeline->frame;
     f.slot = (uint32_t)(timeline->frame % plan->desc.frames_in_flight);
-    f.cut = desc->cut || timeline->frame == 0 || timeline->cut || desc->viewport != timeline->viewport;
+    f.cut =
+        desc->cut || timeline->frame == 0 || timeline->cut || desc->viewport != timeline->viewport;
     return f;
 }
 

@@ -1,5 +1,5 @@
-/* frame_data.h: the frame at hand. It lies on the stack of masu_frame, whose steps read and fill it: what
- * they are about, and the uniforms as they come to be. Besides, the uniforms of the previous frame. */
+/* frame_data.h: data of the current frame, on the stack of masu_frame. Its steps read the
+ * description and fill the uniforms. Also keeps the uniforms of the previous frame. */
 #ifndef MASU_FRAME_DATA_H
 #define MASU_FRAME_DATA_H
 
@@ -14,18 +14,20 @@ typedef struct masu_frame_data {
     const masu_frame_plan *plan;
     const masu_device *device; /* for its mapped memory */
     const masu_draws *draws;
-    masu_frame_desc desc; /* what the host wants, of the rung that the governor has picked */
+    masu_frame_desc desc; /* the host's description, with the rung that the governor has picked */
     uint64_t number;
     uint32_t slot;
     int cut; /* nothing of the previous frame counts: it is taken to be as this one */
 
-    /* What its steps have found. */
+    /* Results of the steps of masu_frame. */
     double eye[3];
-    /* World position that eye, instances and their boxes, cascades and shadow faces are relative to
-     * on the device: 0, or with desc.double_positions a point near an eye that is far out. */
+    /* World position that camera, instances and their boxes, cascades and shadow faces are
+     * relative to on the device: 0, or with desc.double_positions a point near a camera that is
+     * far from 0. */
     double origin[3];
-    /* Tangents of the angles between `forward` and the picture's farthest sides, in any frame with this lens: as if
-     * jitter moved them as far out as it does in any, so that what is made wide enough for it stays as it is. */
+    /* Tangents of the angles between `forward` and the farthest image edges, including the
+     * largest jitter of any frame with this lens, so that bounds made from it do not change with
+     * jitter. */
     double widest[2];
     masu_light light; /* with defaults */
     struct masu_frame_uniforms u;
@@ -33,11 +35,12 @@ typedef struct masu_frame_data {
     uint32_t faces;    /* 1: it renders shadow faces of punctual lights */
 } masu_frame_data;
 
-/* The previous frame, of no length where nothing reads velocities. It is kept here and not on the device,
- * so that no state crosses frames there and frames in flight need not know of each other. */
+/* The previous frame, of no length where nothing reads velocities. It is kept here and not on
+ * the device, so that no state crosses frames there and frames in flight need not know of each
+ * other. */
 typedef struct masu_history {
     struct masu_frame_uniforms *previous;
-    double origin[3]; /* of its eye */
+    double origin[3]; /* the previous frame's origin */
 } masu_history;
 
 void masu_history_alloc(masu_history *history, masu_arena *arena, const masu_frame_plan *plan);
@@ -49,15 +52,16 @@ masu_frame_data masu_frame_begin(const masu_frame_plan *plan, const masu_device 
 const masu_rung *masu_frame_rung(const masu_frame_data *f);
 const masu_rung_plan *masu_frame_rung_plan(const masu_frame_data *f);
 
-/* A double as a float and what that leaves. Volatile: GCC 12 vectorises a loop of these and then takes
- * the conversion to float and back for the identity, which makes `low` 0. */
+/* Splits a double into a float and the remainder. Volatile: GCC 12 vectorises loops over this
+ * function and then treats the conversion to float and back as the identity, which makes `low`
+ * 0. */
 static inline void masu_split_double(double value, float *high, float *low) {
     volatile float rounded = (float)value;
     *high = rounded;
     *low = (float)(value - (double)*high);
 }
 
-/* 0, or where the eye is far out a point near it that rarely moves. */
+/* 0, or a point near a camera that is far from 0; it rarely changes. */
 void masu_far_origin(const double eye[3], double origin[3]);
 /* The previous frame's eye becomes relative to this frame's origin. */
 void masu_history_rebase(masu_history *history, const masu_frame_data *f);

@@ -1,14 +1,14 @@
-/* handles.h: the ids of the public interface. This is the only place that makes and checks them.
+/* handles.h: the ids of the public interface. Only this file makes and checks them.
  *
  * The low 32 bits of an id are 1 + an index that is shifted by an offset, which follows from the
- * hash of the scene and the kind. They are never 0, so id 0 is no object. A handle of another
- * scene or of another kind passes by chance only, at `count` / 2^32. Renderers of the same scene
+ * hash of the scene and the kind. They are never 0, so id 0 is no object. A handle of another scene
+ * or of another kind is accepted with a probability of `count` / 2^32. Renderers of the same scene
  * have the same ids.
  *
  * RESERVE. Objects that are added and removed have the last `reserve` indices. `lives` counts
- * how often an object has come to a slot and gone from it: an odd number is alive. The high 32
- * bits of the id are the number of objects that the slot has had before. A slot is used 2^31 - 1
- * times, then it is retired, so no id is ever used twice in a renderer. */
+ * additions and removals in a slot: an odd number is alive. The high 32 bits of the id are the
+ * number of objects that the slot has had before. A slot is used 2^31 - 1 times, then it is
+ * retired, so no id is ever used twice in a renderer. */
 #ifndef MASU_HANDLES_H
 #define MASU_HANDLES_H
 
@@ -47,7 +47,7 @@ uint64_t masu_handle_at(const masu_handles *handles, uint32_t index);
 /* The index of an id; UINT32_MAX if it is 0, removed, or of another scene or kind. */
 uint32_t masu_handle_index(const masu_handles *handles, uint64_t id);
 
-/* An object comes to a slot of the reserve, or goes. */
+/* An object is added to a slot of the reserve, or removed. */
 static inline void masu_handle_turn(masu_handles *handles, uint32_t index) {
     handles->lives[index - (handles->count - handles->reserve)]++;
 }

@@ -22,7 +22,7 @@ static void read_axes(const struct masu_frame_uniforms *u, double axes[3][3]) {
     }
 }
 
-/* The row of clip_from_rel, in view space: what it takes of the axes. */
+/* The component of a row of clip_from_rel along a view-space axis. */
 static float along(const struct masu_frame_uniforms *u, uint32_t row, const double axis[3]) {
     double sum = 0.0;
     for (uint32_t i = 0; i < 3; i++) sum += (double)u->clip_from_rel[i * 4 + row] * axis[i];
@@ -53,7 +53,7 @@ void masu_frame_view_write(masu_frame_view *view, const masu_frame_data *f) {
         AT(view->view, k, 3) = (float)back;
     }
     AT(view->view, 3, 3) = 1.0f;
-    /* What is 0 in every projection is not left to rounding. */
+    /* Elements that are 0 in every projection are set to 0 exactly, without rounding errors. */
     float *p = view->projection;
     for (uint32_t k = 0; k < 2; k++) {
         AT(p, k, k) = along(u, k, axes[k]);
@@ -61,7 +61,7 @@ void masu_frame_view_write(masu_frame_view *view, const masu_frame_data *f) {
     }
     AT(p, 2, 3) = view->near_distance;
     AT(p, 3, 2) = -1.0f;
-    /* temporal.comp puts each sample where it looks: the camera's own places are gone then, too. */
+    /* temporal.comp removes the jitter, so the camera's own jitter is removed here too. */
     float own[2];
     int resolves = masu_temporal_jitter(f, own) > 0.0f;
     memcpy(view->output_projection, p, sizeof view->projection);

@@ -5,7 +5,7 @@
 
 #include "frame/frame_data.h"
 
-/* Of a scene's frame whose camera and light have been read. */
+/* Writes the view of a scene's frame whose camera and light have been read. */
 void masu_frame_view_write(masu_frame_view *view, const masu_frame_data *f);
 
 #endif

@@ -30,8 +30,8 @@ void masu_instances_alloc(masu_instances *in, masu_arena *arena, const masu_fram
     in->lives = masu_arena_alloc(arena, "reserve instances", reserve, sizeof *in->lives, 4);
 }
 
-/* A transform must reach every slot, each when it is free; with the previous frame, once more: the slot
- * of the frame that moved it still says that it is moving. */
+/* A transform must reach every slot when it is free. With velocities it is written once more,
+ * because the slot of the frame that moved it still has a velocity. */
 static uint8_t frames_to_write(const masu_frame_plan *plan) {
     return (uint8_t)(plan->desc.frames_in_flight + (plan->needs.velocity ? 1 : 0));
 }

@@ -1,4 +1,5 @@
-/* instances.h: where instances are: the host's truth, copied to a slot when it has changed. */
+/* instances.h: transforms of instances. The host's copy is authoritative; changes are copied to
+ * each slot. */
 #ifndef MASU_INSTANCES_H
 #define MASU_INSTANCES_H
 
@@ -23,7 +24,8 @@ typedef struct masu_instances {
     uint32_t hidden_count;
     uint32_t changes; /* how often one was moved, shown or hidden */
     uint32_t *meshes;
-    /* Of the reserve, which the blob knows nothing of: those of each mesh are a list. Of no length without one. */
+    /* Instances of the reserve, which are not in the blob, as one list per mesh. Empty without a
+     * reserve. */
     uint32_t *of_mesh; /* [mesh]: the first, or MASU_BLOB_NONE */
     uint32_t *next;    /* [instance of the reserve]: the next of the same mesh */
     uint32_t *lives;
@@ -46,22 +48,23 @@ static inline int masu_instance_hidden(const masu_instances *in, uint32_t instan
     return in->flags[instance] & MASU_INSTANCE_HIDDEN;
 }
 
-/* Whether it was moved, bent, shown or hidden since the last frame; to be asked before masu_instances_write. */
+/* Whether the instance was moved, deformed, shown or hidden since the last frame; call before
+ * masu_instances_write. */
 int masu_instance_moved(const masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
 
 /* masu_instance_set_look of the public header, of a look that masu_looks_check has accepted. */
 void masu_instances_set_look(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                              const masu_look *look);
 
-/* Of finite rows. */
+/* The rows are finite. */
 void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                           const float rows[12]);
 /* With desc.double_positions: the translation of the rows plus `offset`. */
 void masu_instances_place_at(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                              const float rows[12], const double offset[3]);
-/* It stays where it is, but not as it is: joints have bent it. */
+/* The transform is unchanged, but a skin has deformed the mesh. */
 void masu_instances_touch(masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
-/* What is hidden is in no view, in no reflection, and carries no light. */
+/* Hidden instances are in no view and no reflection, and their lights are off. */
 void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                          int shown);
 
@@ -93,10 +96,11 @@ void masu_instance_position(const masu_instances *in, uint32_t instance, double 
 /* Rows relative to an origin; low: what rounding has left of their translation, or NULL. */
 void masu_instance_rows_from(const struct masu_instance_data *at, const float *low,
                              const double origin[3], float rows[12]);
-/* Whether the slot has another origin than the frame, so that all of it is to be written. */
+/* Whether the slot's origin differs from the frame's, so that all instances must be written. */
 int masu_instances_rebased(const masu_instances *in, const masu_frame_data *f);
 
-/* Those that are dirty to the slot, and one frame less dirty: what else depends on that comes before. */
+/* Writes the dirty instances to the slot and decrements their dirty counts. Call after all
+ * readers of the dirty state. */
 void masu_instances_write(masu_instances *in, const masu_frame_data *f);
 
 #endif

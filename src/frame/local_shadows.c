@@ -12,11 +12,14 @@
 #define NEAR_LEAST 0.05 /* metres */
 #define PI 3.14159265358979323846
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /* ---- Once ------------------------------------------------------------------------------------ */
 
-void masu_local_shadows_alloc(masu_local_shadows *s, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_local_shadows_alloc(masu_local_shadows *s, masu_arena *arena,
+                              const masu_frame_plan *plan) {
     int needed = plan->needs.local_shadows;
     uint32_t capacity = plan->local_lights, lights = needed ? plan->scene.lights : 0;
     uint32_t instances = needed ? plan->scene.instances : 0;
@@ -26,20 +29,25 @@ void masu_local_shadows_alloc(masu_local_shadows *s, masu_arena *arena, const ma
     s->choice = masu_arena_alloc(arena, "shadow slots", capacity, sizeof *s->choice, 8);
     s->wish = masu_arena_alloc(arena, "shadow wishes", capacity != 0, sizeof *s->wish, 8);
     s->lights = masu_arena_alloc(arena, "shadow faces", capacity, sizeof *s->lights, 8);
-    s->slot_of_light = masu_arena_alloc(arena, "shadows of lights", lights, sizeof *s->slot_of_light, 4);
+    s->slot_of_light =
+        masu_arena_alloc(arena, "shadows of lights", lights, sizeof *s->slot_of_light, 4);
     s->boxes = masu_arena_alloc(arena, "previous boxes", instances, sizeof *s->boxes, 4);
-    s->group_states = masu_arena_alloc(arena, "group states of faces", needed ? plan->scene.groups : 0,
-                                       sizeof *s->group_states, 1);
+    s->group_states = masu_arena_alloc(arena, "group states of faces",
+                                       needed ? plan->scene.groups : 0, sizeof *s->group_states, 1);
     s->marks = masu_arena_alloc(arena, "caster marks", instances, sizeof *s->marks, 1);
 }
 
-static VkDrawIndexedIndirectCommand *draws_of(const masu_device *device, uint32_t slot, uint32_t face) {
+static VkDrawIndexedIndirectCommand *draws_of(const masu_device *device, uint32_t slot,
+                                              uint32_t face) {
     const masu_frame_plan *plan = device->plan;
     uint64_t at = (plan->face_draws + (uint64_t)face * plan->draws) * MASU_DRAW_BYTES;
-    return (VkDrawIndexedIndirectCommand *)(void *)(masu_buffer_pointer(device, MASU_BUFFER_DRAWS, slot) + at);
+    return (VkDrawIndexedIndirectCommand *)(void *)(masu_buffer_pointer(device, MASU_BUFFER_DRAWS,
+                                                                        slot) +
+                                                    at);
 }
 
-void masu_local_shadows_write_scene(const masu_device *device, const masu_draws *draws, const masu_scene_view *v) {
+void masu_local_shadows_write_scene(const masu_device *device, const masu_draws *draws,
+                                    const masu_scene_view *v) {
     const masu_frame_plan *plan = device->plan;
     if (!plan->needs.local_shadows || !draws->batch_count) return;
     for (uint32_t slot = 0; slot < plan->desc.frames_in_flight; slot++) {
@@ -68,7 +76,7 @@ static void spot_axes(const double direction[3], double axis[3][3]) {
     }
 }
 
-/* Unless the whole face, which lies within 54.74 degrees around its middle, is outside of the cone. */
+/* False only if the whole face, within 54.74 degrees around its centre, is outside of the cone. */
 int masu_local_face_is_lit(const double axis[3], double angle, uint32_t face) {
     double cosine = face % 2 ? -axis[face / 2] : axis[face / 2];
     return acos(fmin(fmax(cosine, -1.0), 1.0)) < angle + 0.9554;
@@ -76,12 +84,14 @@ int masu_local_face_is_lit(const double axis[3], double angle, uint32_t face) {
 
 /* The planes of all that a face sees in its tile, and the light's range. */
 static void set_planes(masu_local_light *light, masu_local_face *face) {
-    double guard = (double)MASU_LOCAL_TILE_LEAST / (double)(MASU_LOCAL_TILE_LEAST - 2 * MASU_LOCAL_GUARD);
+    double guard =
+        (double)MASU_LOCAL_TILE_LEAST / (double)(MASU_LOCAL_TILE_LEAST - 2 * MASU_LOCAL_GUARD);
     double slope = (light->tangent > 0.0 ? light->tangent : 1.0) * guard;
     face->view.count = 0;
     for (uint32_t plane = 0; plane < 4; plane++) {
         double n[3], sign = plane % 2 ? -1.0 : 1.0;
-        for (uint32_t k = 0; k < 3; k++) n[k] = slope * face->axis[2][k] + sign * face->axis[plane / 2][k];
+        for (uint32_t k = 0; k < 3; k++)
+            n[k] = slope * face->axis[2][k] + sign * face->axis[plane / 2][k];
         masu_cull_add_plane(&face->view, n, -dot(n, light->position));
     }
     double back[3] = {-face->axis[2][0], -face->axis[2][1], -face->axis[2][2]};
@@ -90,7 +100,8 @@ static void set_planes(masu_local_light *light, masu_local_face *face) {
 
 /* Gives up the set of faces that was rendered before the one of now. */
 static void drop_shown(masu_local_shadows *s, masu_local_light *light) {
-    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) masu_shadow_tile_give(&s->tiles, &light->shown_tiles[i]);
+    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++)
+        masu_shadow_tile_give(&s->tiles, &light->shown_tiles[i]);
     light->shown = 0;
 }
 
@@ -114,13 +125,16 @@ static void keep_shown(masu_local_light *light) {
     light->shown = 1;
 }
 
-/* The light as it is now; its faces are due if it is not as it was. Returns whether it has jumped, or is another one. */
-static int set_light(masu_local_shadows *s, masu_local_light *light, const masu_punctual_light_state *state,
-                     const double position[3], const double direction[3], uint64_t frame) {
+/* Updates a light; its faces are due if it has changed. Returns whether it has jumped, or is
+ * another light. */
+static int set_light(masu_local_shadows *s, masu_local_light *light,
+                     const masu_punctual_light_state *state, const double position[3],
+                     const double direction[3], uint64_t frame) {
     masu_local_light now;
     memset(&now, 0, sizeof now);
     double length = sqrt(dot(direction, direction));
-    int cone = state->spot && (double)state->inner < PI - 1e-6 && length > 0.0; /* as masu_light_place has it */
+    /* as masu_light_place has it */
+    int cone = state->spot && (double)state->inner < PI - 1e-6 && length > 0.0;
     now.angle = cone ? fmin((double)state->outer, PI) : PI;
     for (uint32_t k = 0; k < 3; k++) {
         now.position[k] = position[k];
@@ -170,7 +184,8 @@ static int set_light(masu_local_shadows *s, masu_local_light *light, const masu_
 static void free_slot(void *user, uint32_t slot) {
     masu_local_shadows *s = user;
     s->slot_of_light[s->choice[slot].light - 1] = 0;
-    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) masu_shadow_tile_give(&s->tiles, &s->lights[slot].faces[i].tile);
+    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++)
+        masu_shadow_tile_give(&s->tiles, &s->lights[slot].faces[i].tile);
     drop_shown(s, &s->lights[slot]);
     memset(&s->lights[slot], 0, sizeof s->lights[slot]);
 }
@@ -188,7 +203,7 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
     uint32_t viewports = f->plan->desc.viewport_count ? f->plan->desc.viewport_count : 1;
     s->most = rung->local_shadows == MASU_OFF ? 0 : rung->local_shadow_lights * viewports;
     if (s->most > s->capacity) s->most = s->capacity;
-    /* Where there are none, casters are not followed. */
+    /* Without faces, casters are not tracked. */
     if (s->empty || !s->most) forget(s, f->plan);
     for (uint32_t k = 0; s->empty && k < f->plan->scene.instances; k++) s->boxes[k][3] = -1.0f;
     s->since = f->desc.cut || s->empty ? 0 : s->since + (s->since < MASU_SHADOW_CUT);
@@ -202,10 +217,12 @@ double masu_local_face_wish(double range, double tangent, double distance, doubl
     return fmax(256.0, 2.0 * third * tangent * pixels / (0.75 * fmax(distance, third)));
 }
 
-/* A size is kept for wishes of less than half to more than twice of it. */
+/* A size is kept for wishes from less than half to more than twice the size. */
 uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most) {
     uint32_t size = MASU_LOCAL_TILE_LEAST;
-    if (now && now <= most && (wish <= 2.2 * now || now == most) && (wish >= 0.45 * now || now == size)) return now;
+    if (now && now <= most && (wish <= 2.2 * now || now == most) &&
+        (wish >= 0.45 * now || now == size))
+        return now;
     while (size < most && wish > 1.4142 * size) size *= 2;
     return size;
 }
@@ -232,25 +249,27 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
     uint32_t slot = s->slot_of_light[light];
     if (!s->most) return;
     for (uint32_t k = 0; k < 3; k++) rel[k] = position[k] - f->eye[k];
-    masu_punctual_light_state lit = *state; /* a lamp that is off keeps its slot until another one needs it */
+    /* a lamp that is off keeps its slot until another one needs it */
+    masu_punctual_light_state lit = *state;
     if (slot) lit.color[0] = fmaxf(lit.color[0], 1e-30f);
     if (!masu_light_place(&lit, rel, direction, &placed)) return;
     double distance = sqrt(dot(rel, rel));
     double center[3] = {(double)placed.bound[0], (double)placed.bound[1], (double)placed.bound[2]};
-    double score = masu_shadow_score(masu_light_intensity(state, direction), (double)placed.bound[3],
-                                     sqrt(dot(center, center)));
+    double score = masu_shadow_score(masu_light_intensity(state, direction),
+                                     (double)placed.bound[3], sqrt(dot(center, center)));
     if (masu_light_outside(placed.bound, f->u.clip_from_rel)) score *= MASU_SHADOW_UNSEEN;
     if (slot) {
         score *= MASU_SHADOW_HYSTERESIS;
         s->choice[slot - 1].offered = 1;
         s->choice[slot - 1].score = score;
-        if (set_light(s, &s->lights[slot - 1], state, position, direction, f->number)) s->choice[slot - 1].fade = 0;
+        if (set_light(s, &s->lights[slot - 1], state, position, direction, f->number))
+            s->choice[slot - 1].fade = 0;
         set_wish(&s->lights[slot - 1], f, distance);
     }
     masu_shadow_wish_add(s->wish, s->most, light + 1, score);
 }
 
-/* ---- Casters that have moved ----------------------------------------------------------------- */
+/* ---- Moved casters --------------------------------------------------------------------------- */
 
 static int touches(const masu_local_light *light, const masu_local_face *face, const float box[6]) {
     double outside = 0.0;
@@ -287,8 +306,8 @@ static int casts(const masu_instances *in, uint32_t i) {
     return !masu_instance_hidden(in, i) && !masu_look_shadowless(&in->looks, i);
 }
 
-static void follow_casters(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                           const masu_frame_data *f) {
+static void follow_casters(masu_local_shadows *s, const masu_instances *in,
+                           const masu_bounds *bounds, const masu_frame_data *f) {
     for (uint32_t i = 0; in->dirty_count && i < f->plan->scene.instances; i++) {
         if (!masu_instance_moved(in, f->plan, i)) continue;
         touch_faces(s, s->boxes[i], f->number);
@@ -298,35 +317,40 @@ static void follow_casters(masu_local_shadows *s, const masu_instances *in, cons
     }
 }
 
-/* The SDF, as one caster that moves with each change of what its field depends on. */
+/* Treats the SDF as one caster that moves whenever its inputs change. */
 static void follow_sdf(masu_local_shadows *s, const masu_frame_data *f) {
     s->sdf_box[3] = -1.0f;
     if (!f->plan->needs.sdf_casts) return;
     for (uint32_t k = 0; k < 3; k++) {
-        double low = (double)f->u.sdf_low[k] + f->eye[k], high = (double)f->u.sdf_high[k] + f->eye[k];
+        double low = (double)f->u.sdf_low[k] + f->eye[k],
+               high = (double)f->u.sdf_high[k] + f->eye[k];
         s->sdf_box[k] = (float)(0.5 * (low + high));
         s->sdf_box[3 + k] = (float)(0.5 * (high - low) * 1.0001);
     }
     uint64_t hash = masu_fnv1a64(f->u.anchor, 3 * sizeof *f->u.anchor);
-    if (f->plan->needs.dynamic) {
+    if (f->plan->needs.moving) {
         hash ^= masu_fnv1a64(f->u.sdf_params, sizeof f->u.sdf_params);
     }
-    if (f->plan->needs.timed) hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]);
+    if (f->plan->needs.timed)
+        hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]);
     for (uint32_t i = 0; hash != s->sdf_hash && i < s->capacity * MASU_LOCAL_FACES; i++)
         s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES].marched = 0;
     if (hash != s->sdf_hash) touch_faces(s, s->sdf_box, f->number);
     s->sdf_hash = hash;
 }
 
-static int sdf_reaches(const masu_local_shadows *s, const masu_local_light *light, const masu_local_face *face) {
+static int sdf_reaches(const masu_local_shadows *s, const masu_local_light *light,
+                       const masu_local_face *face) {
     return s->sdf_box[3] >= 0.0f && touches(light, face, s->sdf_box);
 }
 
 /* ---- Rendering ------------------------------------------------------------------------------- */
 
-/* What a face sees, into the lists and counts of a slot of the frame: always the finest form. Returns how many. */
-static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                             const masu_frame_data *f, const masu_local_light *light, const masu_local_face *face,
+/* Writes the casters of a face, always the finest LOD, into the lists and counts of the frame's
+ * slot. Returns their number. */
+static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in,
+                             const masu_bounds *bounds, const masu_frame_data *f,
+                             const masu_local_light *light, const masu_local_face *face,
                              uint32_t number) {
     const masu_scene_data *scene = &f->plan->scene;
     if (!f->plan->needs.raster) return 0;
@@ -335,8 +359,8 @@ static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, co
     masu_cull(&set, &face->view, s->group_states, s->marks, 1, &counts);
     /* Never read: upload memory may be write-combined. */
     VkDrawIndexedIndirectCommand *draws = draws_of(f->device, f->slot, number);
-    uint32_t *ids = (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) + f->plan->drawn.faces +
-                    (uint64_t)number * f->plan->listed;
+    uint32_t *ids = (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) +
+                    f->plan->drawn.faces + (uint64_t)number * f->plan->listed;
     uint32_t all = 0;
     for (uint32_t b = 0, forms; b < f->draws->batch_count; b += forms) {
         const masu_batch *mesh = &f->draws->batches[b];
@@ -346,7 +370,8 @@ static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, co
             if (s->marks[i] && touches(light, face, s->boxes[i]) && casts(in, i))
                 ids[mesh->first_listed + kept++] = i;
         }
-        for (uint32_t i = masu_instances_added(in, mesh->mesh); i != MASU_BLOB_NONE; i = masu_instances_next(in, i)) {
+        for (uint32_t i = masu_instances_added(in, mesh->mesh); i != MASU_BLOB_NONE;
+             i = masu_instances_next(in, i)) {
             if (s->marks[i] && touches(light, face, s->boxes[i]) && casts(in, i))
                 ids[mesh->first_listed + kept++] = i;
         }
@@ -365,15 +390,17 @@ static void clear_draws(const masu_frame_data *f, uint32_t number) {
     for (uint32_t d = 0; d < f->plan->draws; d++) draws[d].instanceCount = 0;
 }
 
-static void write_face(const masu_local_light *light, const masu_local_face *face, const double origin[3],
-                       uint32_t square, uint32_t number, struct masu_local_face_uniforms *u) {
+static void write_face(const masu_local_light *light, const masu_local_face *face,
+                       const double origin[3], uint32_t square, uint32_t number,
+                       struct masu_local_face_uniforms *u) {
     double edge = face->tile.size, slope = light->tangent > 0.0 ? light->tangent : 1.0;
     double part = edge / square, width = 2.0 * slope / (edge - 2.0 * MASU_LOCAL_GUARD);
     for (uint32_t k = 0; k < 3; k++) {
         u->row0[number][k] = (float)face->axis[0][k];
         u->row1[number][k] = (float)face->axis[1][k];
         u->row2[number][k] = (float)face->axis[2][k];
-        masu_split_double(light->position[k] - origin[k], &u->origin_hi[number][k], &u->origin_lo[number][k]);
+        masu_split_double(light->position[k] - origin[k], &u->origin_hi[number][k],
+                          &u->origin_lo[number][k]);
     }
     u->row0[number][3] = (float)(2.0 / (width * square)); /* from slopes to -1..1 of the square */
     u->row1[number][3] = (float)(part - 1.0);
@@ -386,7 +413,8 @@ static void write_face(const masu_local_light *light, const masu_local_face *fac
 }
 
 /* Those of the pass that marches the SDF go over all such faces of the frame. */
-static void take_groups(masu_local_face *face, uint32_t number, struct masu_local_face_uniforms *u) {
+static void take_groups(masu_local_face *face, uint32_t number,
+                        struct masu_local_face_uniforms *u) {
     u->tile[number][3] = face->marched ? 1 : 2;
     if (face->marched) return;
     face->marched = 1;
@@ -395,7 +423,8 @@ static void take_groups(masu_local_face *face, uint32_t number, struct masu_loca
     u->groups[2] = number + 1;
 }
 
-/* A tile of the size that is wanted, or of a smaller one; its own if it has that and stays. 0: there is no room. */
+/* Finds a tile of the wanted size or smaller; keeps the present tile if the size is unchanged.
+ * 0: the atlas is full. */
 static int find_tile(masu_local_shadows *s, masu_local_light *light, masu_local_face *face) {
     if (!face->moves && face->tile.size == light->size) return 1;
     face->marched = 0;
@@ -412,18 +441,22 @@ static int find_tile(masu_local_shadows *s, masu_local_light *light, masu_local_
     return find_tile(s, light, face);
 }
 
-/* Sizes that have room together. What has a size counts more for it, so that lights of equal score do not swap. */
+/* Chooses sizes that fit the atlas together. Faces that have a size get a higher score, so that
+ * lights of equal score do not swap. */
 static void fit_sizes(masu_local_shadows *s, const masu_frame_data *f) {
     uint32_t sizes[MASU_SHADOW_LIGHTS_MAX], faces[MASU_SHADOW_LIGHTS_MAX];
     double scores[MASU_SHADOW_LIGHTS_MAX];
     for (uint32_t slot = 0; slot < s->capacity; slot++) {
         const masu_local_light *light = &s->lights[slot];
         sizes[slot] = light->wish;
-        if (light->still < MASU_LOCAL_STILL && sizes[slot] > MASU_LOCAL_TILE_MOVES) sizes[slot] = MASU_LOCAL_TILE_MOVES;
+        if (light->still < MASU_LOCAL_STILL && sizes[slot] > MASU_LOCAL_TILE_MOVES)
+            sizes[slot] = MASU_LOCAL_TILE_MOVES;
         uint32_t drawn;
         faces[slot] = faces_of(light, &drawn);
-        if (light->still < MASU_LOCAL_STILL && faces[slot] > 1) faces[slot] *= 2; /* one set is shown, one rendered */
-        scores[slot] = s->choice[slot].score * (light->size >= light->wish ? MASU_SHADOW_HYSTERESIS : 1.0);
+        /* one set is shown, one rendered */
+        if (light->still < MASU_LOCAL_STILL && faces[slot] > 1) faces[slot] *= 2;
+        scores[slot] =
+            s->choice[slot].score * (light->size >= light->wish ? MASU_SHADOW_HYSTERESIS : 1.0);
     }
     masu_shadow_sizes_fit(sizes, faces, scores, s->capacity, f->plan->local_atlas);
     for (uint32_t slot = 0; slot < s->capacity; slot++) {
@@ -436,8 +469,9 @@ static void fit_sizes(masu_local_shadows *s, const masu_frame_data *f) {
     }
 }
 
-/* At rest: a face with too small a tile gets one of its size, or else the last tile that can moves forward. Each move
- * is towards the first place, so there is an end to them. */
+/* When no face is due: a face with too small a tile gets one of its size, else the last tile
+ * that can move is moved forward. Each move is towards the start of the atlas, so the moves
+ * terminate. */
 static void join_tiles(masu_local_shadows *s, const masu_frame_data *f) {
     masu_local_face *small = NULL, *last = NULL;
     uint32_t size = 0;
@@ -457,7 +491,8 @@ static void join_tiles(masu_local_shadows *s, const masu_frame_data *f) {
     }
     for (uint32_t i = 0; i < s->capacity * MASU_LOCAL_FACES; i++) {
         masu_local_face *face = &s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES];
-        if (last && masu_shadow_tile_order(face->tile) < masu_shadow_tile_order(last->tile)) continue;
+        if (last && masu_shadow_tile_order(face->tile) < masu_shadow_tile_order(last->tile))
+            continue;
         if (masu_shadow_tile_before(&s->tiles, face->tile).size) last = face;
     }
     if (!last) return;
@@ -465,7 +500,8 @@ static void join_tiles(masu_local_shadows *s, const masu_frame_data *f) {
     last->moves = 1;
 }
 
-/* By the sphere around what a face of a cube reaches: a point light that moves may have more faces than the budget. */
+/* Tests the bounding sphere of a cube face's range: a moving point light may have more faces
+ * than the budget. */
 static void find_seen(masu_local_shadows *s, const masu_frame_data *f) {
     for (uint32_t slot = 0; slot < s->capacity; slot++) {
         const masu_local_light *light = &s->lights[slot];
@@ -474,8 +510,10 @@ static void find_seen(masu_local_shadows *s, const masu_frame_data *f) {
             float bound[4] = {0, 0, 0, (float)(0.8166 * light->range)};
             if (!face->due) continue;
             for (uint32_t k = 0; k < 3; k++)
-                bound[k] = (float)(light->position[k] - f->eye[k] + 0.5774 * light->range * face->axis[2][k]);
-            face->seen = (uint8_t)(light->tangent > 0.0 || !masu_light_outside(bound, f->u.clip_from_rel));
+                bound[k] = (float)(light->position[k] - f->eye[k] +
+                                   0.5774 * light->range * face->axis[2][k]);
+            face->seen =
+                (uint8_t)(light->tangent > 0.0 || !masu_light_outside(bound, f->u.clip_from_rel));
         }
     }
 }
@@ -487,8 +525,10 @@ static uint32_t next_due(const masu_local_shadows *s, const uint8_t *skip) {
         const masu_local_face *face = &s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES];
         if (!face->due || skip[i]) continue;
         if (best != none) {
-            const masu_local_face *other = &s->lights[best / MASU_LOCAL_FACES].faces[best % MASU_LOCAL_FACES];
-            double score = s->choice[i / MASU_LOCAL_FACES].score, than = s->choice[best / MASU_LOCAL_FACES].score;
+            const masu_local_face *other =
+                &s->lights[best / MASU_LOCAL_FACES].faces[best % MASU_LOCAL_FACES];
+            double score = s->choice[i / MASU_LOCAL_FACES].score,
+                   than = s->choice[best / MASU_LOCAL_FACES].score;
             if (face->since != other->since ? face->since > other->since
                 : face->seen != other->seen ? face->seen < other->seen
                                             : score <= than)
@@ -499,7 +539,7 @@ static uint32_t next_due(const masu_local_shadows *s, const uint8_t *skip) {
     return best;
 }
 
-/* Of new slots. */
+/* Initializes new slots. */
 static void place_lights(masu_local_shadows *s) {
     for (uint32_t slot = 0; slot < s->capacity; slot++) {
         if (s->choice[slot].light) s->slot_of_light[s->choice[slot].light - 1] = slot + 1;
@@ -515,21 +555,22 @@ static void set_ready(masu_local_shadows *s, masu_local_slot *stats) {
             stats->waiting += face->due;
         }
         stats->waiting += s->lights[slot].behind;
-        stats->waiting += s->choice[slot].light && !s->lights[slot].size; /* it has its slot since this frame */
+        /* it has its slot since this frame */
+        stats->waiting += s->choice[slot].light && !s->lights[slot].size;
         s->choice[slot].ready = ready;
         stats->lights += s->choice[slot].light != 0;
     }
 }
 
-/* Of how far shadows are faded in: another number as soon as one differs, as good as always. */
+/* A hash of the fade factors: differs as soon as one differs, except for collisions. */
 static uint32_t faded(const masu_local_shadows *s) {
     uint32_t sum = 0;
     for (uint32_t slot = 0; slot < s->capacity; slot++) sum = 31 * sum + s->choice[slot].fade;
     return sum;
 }
 
-int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                             masu_frame_data *f) {
+int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in,
+                             const masu_bounds *bounds, masu_frame_data *f) {
     masu_local_slot *stats = &s->slots[f->slot];
     uint32_t budget = s->most ? masu_frame_rung(f)->local_shadow_faces : 0, number = 0;
     uint8_t skip[MASU_SHADOW_LIGHTS_MAX * MASU_LOCAL_FACES];
@@ -597,14 +638,17 @@ void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, const do
         if (!face->used || !(face->drawn || of->shown) || !tile.size) continue;
         while (1u << log < tile.size) log++;
         words[i] = log | s->choice[slot - 1].fade << MASU_LOCAL_FADE_SHIFT |
-                   (uint32_t)(tile.y / 8) << MASU_LOCAL_Y_SHIFT | (uint32_t)(tile.x / 8) << MASU_LOCAL_X_SHIFT;
+                   (uint32_t)(tile.y / 8) << MASU_LOCAL_Y_SHIFT |
+                   (uint32_t)(tile.x / 8) << MASU_LOCAL_X_SHIFT;
     }
-    float across[3] = {(float)of->faces[0].axis[0][0], (float)of->faces[0].axis[0][1], (float)of->faces[0].axis[0][2]};
+    float across[3] = {(float)of->faces[0].axis[0][0], (float)of->faces[0].axis[0][1],
+                       (float)of->faces[0].axis[0][2]};
     if (of->tangent > 0.0 && words[0]) memcpy(&words[1], across, sizeof across);
     float near_distance = (float)of->near_distance, tangent = (float)of->tangent;
     memcpy(&words[6], &near_distance, sizeof near_distance);
     memcpy(&words[7], &tangent, sizeof tangent);
     memcpy(out->shadow, words, sizeof words);
     for (uint32_t k = 0; k < 3; k++)
-        out->shadow_origin[k] = (float)((of->shown ? of->shown_position : of->position)[k] - eye[k]);
+        out->shadow_origin[k] =
+            (float)((of->shown ? of->shown_position : of->position)[k] - eye[k]);
 }

@@ -1,6 +1,6 @@
-/* looks.h: the looks that the host gives to instances (masu_look): tint, emission, fade, texture
- * coordinates for the GPU; which views show them for the CPU. Of no length without
- * desc.instance_looks. Part of masu_instances (instances.h). */
+/* looks.h: per-instance appearance that the host sets (masu_look): tint, emission, fade and
+ * texture coordinates for the GPU; visible views for the CPU. Empty without desc.instance_looks.
+ * Part of masu_instances (instances.h). */
 #ifndef MASU_LOOKS_H
 #define MASU_LOOKS_H
 

@@ -1,4 +1,5 @@
-/* materials.c: see materials.h. What is out of range is refused before it is kept; nothing else here can fail. */
+/* materials.c: see materials.h. Values out of range are rejected before anything changes;
+ * nothing else here can fail. */
 #include "frame/materials.h"
 
 #include "base/error.h"
@@ -18,7 +19,7 @@ void masu_materials_alloc(masu_materials *s, masu_arena *arena, const masu_frame
     s->names = masu_arena_alloc(arena, "material names", count, sizeof *s->names, 8);
 }
 
-/* As of a material whose factors are 1: what is left is the maps'. */
+/* As for a material whose factors are 1: only the maps' influence remains. */
 static masu_material_traced traced_of(const masu_frame_plan *plan, const masu_scene_view *v,
                                       uint64_t i) {
     masu_blob_material unit = v->materials[i];
@@ -41,7 +42,7 @@ void masu_materials_copy_scene(masu_materials *s, const masu_frame_plan *plan,
     }
 }
 
-/* ---- What the host changes ------------------------------------------------------------------- */
+/* ---- Changes by the host --------------------------------------------------------------------- */
 
 uint32_t masu_materials_find(const masu_materials *s, const char *name) {
     uint64_t hash = masu_fnv1a64(name, strlen(name));
@@ -57,7 +58,7 @@ static masu_material_mode mode_of(uint32_t flags) {
     return flags & MASU_MATERIAL_IS_MASK ? MASU_MATERIAL_MASKED : MASU_MATERIAL_OPAQUE;
 }
 
-/* Of a lobe (masu_lobe_code), which stays as it is. */
+/* For a lobe (masu_lobe_code), which is not changed. */
 static float specular_in(float given) {
     uint32_t code = given < 0.0f ? (uint32_t)-given - 1u : 0;
     float root = (float)(code & 255u) / 255.0f;
@@ -94,7 +95,8 @@ typedef struct factor {
     float most;
 } factor;
 
-static masu_result check_factors(uint32_t material, const masu_material_state *s, int lobe, masu_detail *detail) {
+static masu_result check_factors(uint32_t material, const masu_material_state *s, int lobe,
+                                 masu_detail *detail) {
     const factor factors[] = {{"base_color", s->base_color, 3, 1.0f},
                               {"opacity", &s->opacity, 1, 1.0f},
                               {"roughness", &s->roughness, 1, 1.0f},
@@ -115,7 +117,8 @@ static masu_result check_factors(uint32_t material, const masu_material_state *s
     return MASU_OK;
 }
 
-static masu_result fixed(uint32_t material, const char *what, const char *why, masu_detail *detail) {
+static masu_result fixed(uint32_t material, const char *what, const char *why,
+                         masu_detail *detail) {
     return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, material,
                      "material %u: %s cannot be changed: %s", material, what, why);
 }
@@ -132,7 +135,7 @@ static masu_result check_texture(const masu_materials *s, const masu_frame_plan 
     return fixed(i, "texture", "it has no base-colour map", detail);
 }
 
-/* What would change a pass, a pipeline or an image. */
+/* Rejects changes that would require another pass, pipeline or image. */
 static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *plan, uint32_t i,
                                const masu_material_state *to, masu_detail *detail) {
     const masu_material_state now = masu_materials_get(s, i);
@@ -148,13 +151,15 @@ static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *p
     if (to->coat > 0.0f && !plan->scene.coats)
         return fixed(i, "coat", "the scene has no material with one, and no tables for it", detail);
     if (s->now[i].more[0] < 0.0f) {
-        const char *why = "the material has a sheen, an anisotropy, or a reflectance with a colour or above 0.08";
+        const char *why =
+            "the material has a sheen, an anisotropy, or a reflectance with a colour or above 0.08";
         if (to->specular != now.specular) return fixed(i, "specular", why, detail);
         if (to->coat > 0.0f) return fixed(i, "coat", why, detail);
     }
     if (blends || plan->needs.surface) return MASU_OK;
     if (to->specular != now.specular)
-        return fixed(i, "specular", "the scene has no image for it: no material has one but 0.5", detail);
+        return fixed(i, "specular", "the scene has no image for it: no material has one but 0.5",
+                     detail);
     return to->coat > 0.0f ? fixed(i, "coat", "the scene has no image for it", detail) : MASU_OK;
 }
 

@@ -1,9 +1,10 @@
-/* materials.h: factors of materials that the host changes while frames go on: its truth, copied to a slot that has not
- * seen the last change. At the top of each frame the device copies the slot to where shaders read materials, and to
- * where rays do: frames in flight each have their own. All of it is of no length without
- * desc.mutable_materials.
+/* materials.h: material factors that the host changes at run time. The host's copy is authoritative
+ * and is written to each slot that lacks the last change. At the start of each frame the device
+ * copies the slot to the buffers that shaders and rays read, so frames in flight have separate
+ * copies. Empty without desc.mutable_materials.
  *
- * What pipelines and recordings know of a material, its flags, maps and cut-off, stays as the scene has it. */
+ * Flags, maps and the alpha cut-off, which pipelines and recordings depend on, keep the scene's
+ * values. */
 #ifndef MASU_MATERIALS_H
 #define MASU_MATERIALS_H
 
@@ -12,7 +13,7 @@
 #include "scene/material.h"
 #include "scene/blob_section.h"
 
-/* What a ray finds besides the factors. */
+/* Material data of rays that is not a factor. */
 typedef struct masu_material_traced {
     float roughness, metallic; /* of the maps: factors are times it */
     uint32_t maps[4];
@@ -39,7 +40,7 @@ masu_material_state masu_materials_get(const masu_materials *s, uint32_t materia
 masu_result masu_materials_set(masu_materials *s, const masu_frame_plan *plan, uint32_t material,
                                const masu_material_state *state, masu_detail *detail);
 
-/* All of them to the slot, where one has changed. */
+/* Writes all materials to the slot if one has changed. */
 void masu_materials_write(masu_materials *s, const masu_frame_data *f);
 
 #endif

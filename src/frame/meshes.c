@@ -153,7 +153,7 @@ static void encode_normal(const float n[3], int16_t out[2]) {
     out[1] = snorm(y);
 }
 
-/* Also the box, which is slightly enlarged because shaders transform it with rounding. */
+/* Also writes the box, slightly enlarged because shaders transform boxes with rounding. */
 static void write_vertices(unsigned char *to, float box[6], const masu_mesh_data *data) {
     float low[3], high[3];
     memcpy(low, data->positions, sizeof low);

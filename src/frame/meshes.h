@@ -1,13 +1,14 @@
 /* meshes.h: meshes that the host creates at run time, in the slots of desc.reserve.meshes
  * (src/plan/reserve.h).
  *
- * UPLOAD. A call converts the mesh into `staging`, which the next frame copies to its slot of
+ * UPLOAD. A call converts the mesh into `staging`. The next frame copies it to its slot of
  * MASU_BUFFER_MESH_UPLOAD, with a job for each changed mesh (shaders/shared/meshes.h). The passes
- * mesh_* copy from there to the buffers that draws and rays read. So no frame in flight reads what
+ * mesh_* copy it to the buffers that draws and rays read. So no frame in flight reads memory that
  * the host writes, and a frame without changes has no jobs.
  *
- * BVH. The call also builds the BVH of a new mesh, and orders the triangles by it. The pass
- * skin_trace refits it to moved vertices, as for skins, in the next frame whose rung traces. */
+ * BVH. The call also builds the BVH of a new mesh and sorts the triangles by it. The pass
+ * skin_trace refits the BVH to moved vertices, as for skins, in the next frame whose rung
+ * traces. */
 #ifndef MASU_MESHES_H
 #define MASU_MESHES_H
 
@@ -55,7 +56,7 @@ masu_result masu_meshes_check_vertices(const masu_meshes *s, const masu_frame_pl
                                        uint32_t slot, const masu_mesh_data *data,
                                        masu_detail *detail);
 
-/* Checked data; the box of the mesh in bounds. */
+/* The data has been checked; writes the mesh's box to `bounds`. */
 void masu_meshes_set(masu_meshes *s, masu_bounds *b, masu_draws *draws, const masu_frame_plan *plan,
                      uint32_t slot, const masu_mesh_data *data);
 void masu_meshes_set_vertices(masu_meshes *s, masu_bounds *b, const masu_frame_plan *plan,

@@ -13,8 +13,8 @@ void masu_models_alloc(masu_models *s, masu_arena *arena, const masu_frame_plan 
     s->of_instance =
         masu_arena_alloc(arena, "models of instances", scene->models ? scene->instances : 0,
                          sizeof *s->of_instance, 4);
-    s->lives = masu_arena_alloc(arena, "reserve models", plan->reserve.models + plan->reserve.meshes,
-                                sizeof *s->lives, 4);
+    s->lives = masu_arena_alloc(arena, "reserve models",
+                                plan->reserve.models + plan->reserve.meshes, sizeof *s->lives, 4);
     s->offsets = NULL;
     if (plan->desc.double_positions)
         s->offsets =
@@ -33,7 +33,8 @@ static void multiply(const float a[12], const float b[12], float out[12]) {
     }
 }
 
-/* Where each node of a model is, by the model's own place, and each joint. 0: one is nowhere. */
+/* Computes the transforms of nodes from the model's transform, then the joints. 0: one is not
+ * finite. */
 static int place(masu_models *s, const masu_frame_plan *plan, uint32_t model) {
     const masu_placed_model *m = &s->models[model];
     int finite = 1;
@@ -57,8 +58,9 @@ void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame
     for (uint32_t n = 0; n < masu_own_nodes(plan); n++) {
         const masu_blob_model_node *from = &v->model_nodes[n];
         masu_node *to = &s->nodes[n];
-        *to = (masu_node){
-            .name = masu_scene_name_hash(v, from->name), .parent = from->parent, .instance = from->instance};
+        *to = (masu_node){.name = masu_scene_name_hash(v, from->name),
+                          .parent = from->parent,
+                          .instance = from->instance};
         memcpy(to->local, from->local, sizeof to->local);
     }
     if (s->offsets) memset(s->offsets, 0, scene->models * sizeof *s->offsets);
@@ -76,7 +78,8 @@ void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame
         for (uint32_t n = to->first_node; n < to->first_node + to->node_count; n++) {
             if (s->nodes[n].instance != MASU_BLOB_NONE) s->of_instance[s->nodes[n].instance] = i;
         }
-        (void)place(s, plan, i); /* what the instances say already; checked when the scene was bound */
+        /* equals the instances' initial transforms; checked when the scene was bound */
+        (void)place(s, plan, i);
         if (from->flags & MASU_MODEL_HIDDEN) masu_models_show(s, in, plan, i, 0);
     }
     for (uint32_t i = masu_own_models(plan); i < scene->models; i++)
@@ -148,7 +151,8 @@ static void settle(masu_models *s, masu_instances *in, masu_bounds *b, const mas
     masu_skins_settle(&s->skins, in, b, plan, model);
 }
 
-/* Replaces 12 floats of a model by `rows` and moves its instances; puts them back where that fails. */
+/* Replaces 12 floats of a model by `rows` and moves its instances; puts them back where that
+ * fails. */
 static masu_result replace(masu_models *s, masu_instances *in, masu_bounds *b,
                            const masu_frame_plan *plan, uint32_t model, float *where,
                            const float rows[12], masu_detail *detail) {
@@ -248,7 +252,7 @@ static masu_result check_uses(uint32_t model, uint32_t clips, const masu_clip_us
     return MASU_OK;
 }
 
-/* Nodes that some clip moves: their places are kept in case that they must go back, or go back. */
+/* Saves the transforms of animated nodes, or restores them if `back`. */
 static void swap(masu_models *s, uint32_t model, int back) {
     const masu_placed_model *m = &s->models[model];
     for (uint32_t n = 0; n < m->node_count; n++) {
@@ -287,8 +291,8 @@ masu_result masu_models_morph(masu_models *s, masu_instances *in, masu_bounds *b
                               float weight, masu_detail *detail) {
     if (!(fabsf(weight) <= MASU_MORPH_WEIGHT_MAX))
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "weight", 1000000, 0,
-                         "model %u: the weight of \"%s\" is %g, not within 1e6 of 0", model + 1, name,
-                         (double)weight);
+                         "model %u: the weight of \"%s\" is %g, not within 1e6 of 0", model + 1,
+                         name, (double)weight);
     if (!masu_skins_set(&s->skins, plan, model, name, weight))
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "name", 1, 0,
                          "model %u: it has no morph target \"%s\"", model + 1, name);

@@ -1,6 +1,6 @@
-/* models.h: models of several nodes, which are moved, shown and hidden as one: those that the scene says
- * move. A node has its place relative to the node above it, a model its own place in the world; from both
- * follow the transforms of instances (instances.h), whose truth they become. */
+/* models.h: movable models: hierarchies of nodes that are moved, shown and hidden together. A
+ * node's transform is relative to its parent, a model's to the world; their products are written
+ * to the instances (instances.h). */
 #ifndef MASU_MODELS_H
 #define MASU_MODELS_H
 
@@ -23,9 +23,10 @@ typedef struct masu_models {
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
     masu_handles handles; /* the last ones come and go: copies, then meshes of the host */
     uint32_t *lives;
-    double (*offsets)[3]; /* with desc.double_positions: added to the translation of rows; else NULL */
+    /* with desc.double_positions: added to the translation of rows; else NULL */
+    double (*offsets)[3];
     masu_animation animation;
-    masu_skins skins; /* bent by what the nodes are */
+    masu_skins skins; /* skins deformed by the nodes */
 } masu_models;
 
 void masu_models_alloc(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);
@@ -34,14 +35,15 @@ void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame
                             const masu_scene_view *v);
 
 uint32_t masu_models_find(const masu_models *s, const masu_frame_plan *plan, const char *name);
-/* Of a model's nodes, the first of that name; UINT32_MAX: none. */
+/* The first node of a model with this name; UINT32_MAX: none. */
 uint32_t masu_models_node(const masu_models *s, uint32_t model, const char *name);
 
 /* Whether a model has such a node. */
 masu_result masu_models_check_node(const masu_models *s, uint32_t model, uint32_t node,
                                    masu_detail *detail);
 
-/* Places all nodes anew. What is not finite, or would not be where a node is, is refused, and all stays. */
+/* Updates all nodes. A transform that is not finite, or makes a node's transform not finite, is
+ * rejected, and nothing changes. */
 masu_result masu_models_move(masu_models *s, masu_instances *in, masu_bounds *b,
                              const masu_frame_plan *plan, uint32_t model, const float rows[12],
                              masu_detail *detail);
@@ -67,14 +69,14 @@ void masu_models_set_look(const masu_models *s, masu_instances *in, const masu_f
                           uint32_t model, const masu_look *look);
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown);
-/* A free place of the reserve becomes a copy of a model: its nodes are as they are there; they show nothing yet.
- * Refuses no model: of one with skins nothing is to be copied (masu_models_bends). */
+/* Makes a free slot of the reserve a copy of a model: its nodes have the model's transforms and
+ * show nothing yet. Accepts any model; callers exclude skinned ones (masu_models_bends). */
 void masu_models_copy(masu_models *s, const masu_frame_plan *plan, uint32_t place, uint32_t like);
-/* Whether joints bend something of it. */
+/* Whether the model has a skin. */
 int masu_models_bends(const masu_models *s, const masu_frame_plan *plan, uint32_t model);
 /* A hidden one of that kind that the scene has, or UINT32_MAX. */
 uint32_t masu_models_spare(const masu_models *s, const masu_frame_plan *plan, uint32_t like);
-/* What is around all that it shows, or would. */
+/* The box around all its instances, also hidden ones. */
 void masu_models_box(const masu_models *s, const masu_bounds *b, uint32_t model, float low[3],
                      float high[3]);
 

@@ -1,10 +1,10 @@
-/* nodes.h: a node of a model that moves (models.h): where it is, relative to what. */
+/* nodes.h: a node of a movable model (models.h): its parent and transform. */
 #ifndef MASU_NODES_H
 #define MASU_NODES_H
 
 #include <stdint.h>
 
-/* Nodes of one model lie side by side, each behind the one above it. */
+/* Nodes of one model are contiguous, each after its parent. */
 typedef struct masu_node {
     float local[12]; /* to the node above; of the first ones to the model */
     float world[12];

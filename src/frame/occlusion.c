@@ -1,10 +1,10 @@
-/* occlusion.c: the host's part of occlusion culling: placed occluders, and the words that
- * shaders/occluders.vert, cull.comp and compact.comp read (masu_shared.h, MASU_CULL_*). They lie
- * behind the lists of stage 1 in the same buffer, one slot per frame in flight: a GPU may then write
- * what it reads next, and a stage has six storage buffers and not more.
+/* occlusion.c: the host's part of occlusion culling: placed occluders, and the data that
+ * shaders/occluders.vert, cull.comp and compact.comp read (masu_shared.h, MASU_CULL_*). It follows
+ * the lists of stage 1 in the same buffer, one slot per frame in flight, because a shader stage is
+ * limited to six storage buffers.
  *
- * Nothing is read back. What the GPU remembers from frame to frame is only whether an instance was
- * visible when it was last asked; see cull.comp for why that may be wrong. */
+ * Nothing is read back. The only GPU state between frames is whether an instance was visible in
+ * its last test; cull.comp explains why that may be wrong. */
 #include "frame/occlusion.h"
 
 #include "device/bind.h"
@@ -54,7 +54,7 @@ static void write_header(const masu_frame_plan *plan, uint32_t batches, uint32_t
     header[MASU_CULL_PAIR_COUNT] = plan->scene.placed_occluders;
 }
 
-/* Batches, the large ones of them, and the boxes of occluders. */
+/* Writes batches, the number of large ones, and the boxes of occluders. */
 static void write_tables(const masu_frame_plan *plan, const masu_draws *draws,
                          const masu_scene_view *v, uint32_t *words) {
     const masu_drawn_plan *d = &plan->drawn;
@@ -108,15 +108,15 @@ void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances 
     }
 }
 
-/* Whether an instance hides what is behind it in the views of `marks`, in the level that it is drawn
- * in. A fading one does not in the camera's view, the first. */
+/* Whether an instance occludes in the views of `marks`, at its current LOD. A fading one does
+ * not in the camera's view, the first. */
 static int occludes(const masu_visible *s, const masu_instances *in, const masu_frame_plan *plan,
                     uint32_t marks, uint32_t lods, uint32_t i) {
     if (!(s->marks[i] & marks) || (plan->lods && s->levels[i] > lods)) return 0;
     return !(marks & 1u) || !masu_look_fades(&in->looks, i);
 }
 
-/* Occluders that any view of `marks` keeps, and that lie in what it draws. */
+/* Writes occluders that any view of `marks` keeps and that are in its range. */
 static uint32_t write_pairs(const masu_occlusion *o, const masu_visible *s,
                             const masu_instances *in, const masu_frame_plan *plan, uint32_t marks,
                             uint32_t *to) {
@@ -136,6 +136,20 @@ static uint32_t write_pairs(const masu_occlusion *o, const masu_visible *s,
         }
     }
     return n;
+}
+
+/* For each view, the number of instances that stage 1 has kept, then these. The list is never read:
+ * upload memory may be write-combined. */
+static void write_kept(const masu_visible *s, const masu_frame_plan *plan, uint32_t *to) {
+    uint64_t stride = (uint64_t)plan->scene.instances + 1;
+    uint32_t counts[MASU_MAX_VIEWS] = {0}, all = (1u << plan->views) - 1u;
+    for (uint32_t i = 0; i < plan->scene.instances; i++) {
+        uint32_t marks = s->marks[i] & all;
+        for (uint32_t *kept = to, *count = counts; marks; marks >>= 1, kept += stride, count++) {
+            if (marks & 1u) kept[++*count] = i;
+        }
+    }
+    for (uint32_t view = 0; view < plan->views; view++) to[view * stride] = counts[view];
 }
 
 void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instances *in,
@@ -160,12 +174,5 @@ void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instanc
         memcpy(draw + offsetof(VkDrawIndirectCommand, instanceCount), &n, sizeof n);
         s->slot_views[f->slot][part].occluders = n;
     }
-    for (uint32_t view = 0; view < plan->views; view++) {
-        /* All that stage 1 has kept, one after the other. */
-        uint32_t *kept = words + d->kept + view * ((uint64_t)plan->scene.instances + 1), count = 0;
-        for (uint32_t i = 0; i < plan->scene.instances; i++) {
-            if (s->marks[i] >> view & 1u) kept[++count] = i;
-        }
-        kept[0] = count;
-    }
+    write_kept(s, plan, words + d->kept);
 }

@@ -1,4 +1,4 @@
-/* occlusion.h: the host's part of occlusion culling, which asks what placed occluders hide. */
+/* occlusion.h: the host's part of occlusion culling, whose occluders are placed meshes. */
 #ifndef MASU_OCCLUSION_H
 #define MASU_OCCLUSION_H
 
@@ -10,22 +10,22 @@ typedef struct masu_placed_occluder {
 } masu_placed_occluder;
 
 typedef struct masu_occlusion {
-    masu_placed_occluder *occluders; /* plan->scene.occluders of them */
+    masu_placed_occluder *occluders; /* [plan->scene.occluders] */
     uint32_t turns[MASU_MAX_VIEWS];  /* frames that have drawn the view, modulo 5 */
 } masu_occlusion;
 
 void masu_occlusion_alloc(masu_occlusion *o, masu_arena *arena, const masu_frame_plan *plan);
 void masu_occlusion_copy_scene(masu_occlusion *o, const masu_frame_plan *plan,
                                const masu_scene_view *v);
-/* What stays the same in every frame, to all slots. */
+/* Writes the data that is equal in every frame to all slots. */
 void masu_occlusion_write_scene(const masu_device *device, const masu_draws *draws,
                                 const masu_scene_view *v);
 
 /* Boxes of dirty instances to the slot: before masu_instances_write. */
 void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances *in,
                                 const masu_frame_data *f);
-/* What stage 2 reads of the frame, if its rung has it; after masu_visible_write, whose counts get those
- * of occluders. */
+/* Writes the inputs of stage 2, if the frame's rung has it; after masu_visible_write, to whose
+ * counts it adds those of occluders. */
 void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instances *in,
                           const masu_views *views, const masu_frame_data *f);
 

@@ -1,8 +1,10 @@
-/* particles.c: particles to the slot, the farthest first, and among what is blended.
+/* particles.c: writes particles to the slot, the farthest first, interleaved with transparent
+ * surfaces.
  *
- * Both are sorted by the same key. The recording has a draw of particles before each slot of what is blended
- * (transparents.c) and one behind the last; each draws the run of them that lies between, as vertices from
- * 6 * first on: firstInstance stays 0, since another one would need the feature drawIndirectFirstInstance. */
+ * Both are sorted by the same key. The recording has a draw of particles before each slot of
+ * transparents (transparents.c) and one after the last; each draws the particles between two
+ * transparents as vertices from 6 * first on: firstInstance is always 0, since other values
+ * would need the feature drawIndirectFirstInstance. */
 #include "frame/sprite_kinds.h"
 
 #include <math.h>
@@ -11,24 +13,27 @@
 static const double farthest = 1e15;
 static const float largest = 1e9f, brightest = 4096.0f;
 
-/* Of one that is drawn the square of its distance, else below 0. */
+/* The squared distance of a visible particle; negative: culled. */
 static double square_of(const masu_particle *p, const masu_sprite_eye *eye) {
     double rel[3], seen[3];
     int fine = isfinite(p->half_width) && isfinite(p->half_height) && isfinite(p->rotation) &&
                isfinite(p->opacity) && isfinite(p->edge) && isfinite(p->soft);
     if (p->texture)
-        fine &= masu_is_cell(p->uv) && isfinite(p->uv_next[0]) && isfinite(p->uv_next[1]) && isfinite(p->blend);
+        fine &= masu_is_cell(p->uv) && isfinite(p->uv_next[0]) && isfinite(p->uv_next[1]) &&
+                isfinite(p->blend);
     for (uint32_t k = 0; k < 3; k++) {
         fine &= fabs(p->position[k]) <= farthest && isfinite(p->color[k]);
         rel[k] = p->position[k] - eye->at[k];
     }
-    if (!fine || !(p->half_width > 0.0f) || p->half_height < 0.0f || !(p->opacity > 0.0f)) return -1.0;
+    if (!fine || !(p->half_width > 0.0f) || p->half_height < 0.0f || !(p->opacity > 0.0f))
+        return -1.0;
     masu_to_eye(eye, rel, seen);
     if (!(seen[2] > eye->near_distance)) return -1.0;
     return rel[0] * rel[0] + rel[1] * rel[1] + rel[2] * rel[2];
 }
 
-static void write_particle(const masu_particle *p, const masu_sprite_eye *eye, uint32_t bytes, unsigned char *to) {
+static void write_particle(const masu_particle *p, const masu_sprite_eye *eye, uint32_t bytes,
+                           unsigned char *to) {
     float v[4 * MASU_TEXTURED_PARTICLE_VEC4S] = {0};
     const uint32_t flags = p->flags & (MASU_PARTICLE_LIT | MASU_PARTICLE_ADDITIVE);
     double turn = fmod((double)p->rotation, 6.283185307179586);
@@ -53,9 +58,10 @@ static void write_particle(const masu_particle *p, const masu_sprite_eye *eye, u
     memcpy(to, v, bytes);
 }
 
-uint32_t masu_particles_write(const masu_frame_data *f, const masu_sprite_eye *eye, masu_back_to_front *order,
-                              const masu_back_to_front *blended, uint32_t blended_count,
-                              VkDrawIndirectCommand *draws, unsigned char *to, uint32_t *segments) {
+uint32_t masu_particles_write(const masu_frame_data *f, const masu_sprite_eye *eye,
+                              masu_back_to_front *order, const masu_back_to_front *blended,
+                              uint32_t blended_count, VkDrawIndirectCommand *draws,
+                              unsigned char *to, uint32_t *segments) {
     const masu_particle *particles = f->desc.particles;
     const masu_reserve *r = &f->plan->desc.reserve;
     const uint32_t bytes = f->plan->sprites.particle * (uint32_t)sizeof(masu_vec4);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define MARK 0x80u /* in the marks of visible.h, beside a bit for each view */
+#define MARK 0x80u /* in the marks of visible.h, which have a bit for each view */
 _Static_assert(MASU_MAX_VIEWS <= 7, "marks have a bit for the picked pixel");
 
 void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_plan *plan) {
@@ -43,18 +43,20 @@ masu_result masu_picking_read(masu_frame_data *f, masu_detail *detail) {
                          "pick is set, needed is desc.picking");
     }
     if (d->pick_x >= shown.width || d->pick_y >= shown.height) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "pick_x", shown.width, d->pick_x,
-                         "pick_x, pick_y is %u, %u, allowed are pixels of the output, which is %ux%u",
-                         d->pick_x, d->pick_y, shown.width, shown.height);
+        return masu_fail(
+            detail, MASU_ERROR_ARGUMENT, "pick_x", shown.width, d->pick_x,
+            "pick_x, pick_y is %u, %u, allowed are pixels of the output, which is %ux%u", d->pick_x,
+            d->pick_y, shown.width, shown.height);
     }
-    /* The render pixel that holds the middle of the output's. */
+    /* The render pixel that contains the centre of the output pixel. */
     uint64_t x = (2 * (uint64_t)d->pick_x + 1) * rp->render_width / (2 * (uint64_t)shown.width);
     uint64_t y = (2 * (uint64_t)d->pick_y + 1) * rp->render_height / (2 * (uint64_t)shown.height);
     f->u.temporal[3] = (uint32_t)x | (uint32_t)y << 16;
     return MASU_OK;
 }
 
-/* The pyramid of the block of 2x2 pixels and a pixel around it: pick.vert's matrix, halved across. */
+/* The pyramid of the block of 2x2 pixels and a pixel around it: pick.vert's matrix, halved
+ * across. */
 static void set_pixel_view(masu_cull_view *view, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     const float *from = f->u.clip_from_rel;
@@ -85,7 +87,8 @@ static void list_one(const masu_visible *visible, const masu_instances *in,
 static void list(const masu_visible *visible, const masu_instances *in, const masu_frame_data *f) {
     VkDrawIndexedIndirectCommand *draws =
         (VkDrawIndexedIndirectCommand *)(void *)draws_of(f->device, f->slot);
-    uint32_t *ids = (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) + f->plan->drawn.picks;
+    uint32_t *ids =
+        (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) + f->plan->drawn.picks;
     for (uint32_t b = 0, forms; b < f->draws->batch_count; b += forms) {
         const masu_batch *mesh = &f->draws->batches[b];
         uint32_t kept[1 + MASU_BLOB_LODS_MAX] = {0};

@@ -1,11 +1,11 @@
-/* picking.h: the pixel of which the host asks what it shows: which instances are drawn once more for it, and what of
- * the frame has to be known when the answer is read.
+/* picking.h: finds the instance at a pixel that the host queries: chooses the instances that are
+ * drawn again for it, and keeps the frame's data for the result.
  *
- * The recordings draw every primitive of every form of a mesh a second time, indirectly, for 2x2 pixels
- * (shaders/pick.vert). Draw commands and lists of their own say which instances: of those that the camera's view has kept,
- * in the same forms, the ones whose box is near the pixel. In a frame in which nothing is asked that is none, and such
- * a frame draws nothing more than empty commands. Wrong turn: an image of numbers beside the G-buffer: 4 bytes a pixel
- * written in every frame, for one that is read. */
+ * The recordings draw every primitive of every LOD of a mesh a second time, indirectly, for 2x2
+ * pixels (shaders/pick.vert). Separate draw commands and lists select the instances: those of
+ * the camera's view, in the same LODs, whose box is near the pixel. A frame without a query
+ * executes empty commands only. Rejected alternative: an image of instance ids next to the
+ * G-buffer: 4 bytes a pixel written in every frame, for one that is read. */
 #ifndef MASU_PICKING_H
 #define MASU_PICKING_H
 
@@ -13,7 +13,7 @@
 
 typedef struct masu_picking_slot {
     int asked;
-    uint32_t x, y; /* as the host has asked */
+    uint32_t x, y; /* the queried pixel */
     double eye[3];
 } masu_picking_slot;
 
@@ -24,11 +24,11 @@ typedef struct masu_picking {
 } masu_picking;
 
 void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_plan *plan);
-/* What does not change of the draw commands, to all slots. */
+/* Writes the constant part of the draw commands to all slots. */
 void masu_picking_write_scene(const masu_device *device, const masu_draws *draws,
                               const masu_scene_view *v);
 
-/* Checks what a frame asks for; the pixel of its render size into the uniforms. */
+/* Checks a frame's query and writes the pixel at its render size into the uniforms. */
 masu_result masu_picking_read(masu_frame_data *f, masu_detail *detail);
 /* After masu_visible_write. */
 void masu_picking_write(masu_picking *p, masu_visible *visible, const masu_bounds *bounds,

@@ -1,5 +1,5 @@
-/* post.h: effects on the image (desc.post): the host's values of a frame and its colour table,
- * which are written to the frame's slot. All of it has no length without desc.post. */
+/* post.h: effects on the image (desc.post): the host's values and colour table of a frame, which
+ * are written to the frame's slot. Empty without desc.post. */
 #ifndef MASU_FRAME_POST_H
 #define MASU_FRAME_POST_H
 

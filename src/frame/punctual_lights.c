@@ -36,14 +36,15 @@ static double masu_determinant(const float *const rows[3]) {
     double sum = 0.0;
     for (uint32_t k = 0; k < 3; k++) {
         uint32_t i = (k + 1) % 3, j = (k + 2) % 3;
-        double minor = (double)rows[1][i] * (double)rows[2][j] - (double)rows[1][j] * (double)rows[2][i];
+        double minor =
+            (double)rows[1][i] * (double)rows[2][j] - (double)rows[1][j] * (double)rows[2][i];
         sum += (double)rows[0][k] * minor;
     }
     return sum;
 }
 
-/* World position, direction and the other half axis, from the current transform of the instance that
- * carries the light; of a surface's light the radius too. */
+/* World position, direction and the other half axis, from the current transform of the instance
+ * that carries the light; of a surface's light the radius too. */
 static void carry(const masu_instances *in, masu_punctual_light_state *s, double position[3],
                   double direction[3]) {
     float half_axis[3] = {s->half_axis[0], s->half_axis[1], s->half_axis[2]};
@@ -70,7 +71,7 @@ static void carry(const masu_instances *in, masu_punctual_light_state *s, double
     s->radius = (float)fmin(fmax((double)s->radius * size, 1e-6), 1e9);
 }
 
-/* How far a particle that is seen reaches from its middle, where it is lit. */
+/* The largest distance from a visible particle's centre, where it is lit, to its edge. */
 static float reach_of_particles(const masu_frame_data *f) {
     float reach = 0.0f;
     for (uint32_t i = 0; i < f->desc.particle_count; i++) {
@@ -115,7 +116,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
     float pixel = 2.0f * f->u.up[3] / (float)masu_frame_rung_plan(f)->render_height;
     header.snap = ldexpf(pixel, -(int)f->device->vk.properties.limits.subPixelPrecisionBits);
     /* Lights outside of the view may light reflected surfaces, and what probes see. */
-    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections && !f->plan->needs.bounce;
+    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections &&
+                !f->plan->needs.bounce;
     float reach = culls ? reach_of_particles(f) : 0.0f;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
     struct masu_punctual_light_data *data =
@@ -127,7 +129,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
         if (!is_there(l, in, i, &state, position, direction)) continue;
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
         if (!masu_light_place(&state, position, direction, &placed)) continue;
-        float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2], placed.bound[3] + reach};
+        float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2],
+                          placed.bound[3] + reach};
         if (culls && masu_light_outside(bound, f->u.clip_from_rel)) continue;
         if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, f->eye, &placed);
         data[header.count++] = placed;
@@ -212,9 +215,10 @@ masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
     *light = masu_handle_free(&l->handles, l->handles.count - l->handles.reserve,
                               l->handles.reserve);
     if (*light == UINT32_MAX) {
-        return masu_fail(detail, MASU_ERROR_LIMIT, "reserve.lights", l->handles.reserve + (uint64_t)1,
-                         l->handles.reserve, "reserve.lights: %u are needed, %u are given",
-                         l->handles.reserve + 1, l->handles.reserve);
+        return masu_fail(detail, MASU_ERROR_LIMIT, "reserve.lights",
+                         l->handles.reserve + (uint64_t)1, l->handles.reserve,
+                         "reserve.lights: %u are needed, %u are given", l->handles.reserve + 1,
+                         l->handles.reserve);
     }
     l->states[*light] = to;
     masu_handle_turn(&l->handles, *light);

@@ -1,9 +1,10 @@
-/* punctual_lights.h: local lights, points, spots and area lights, between the scene and the shaders.
+/* punctual_lights.h: local lights (point, spot and area lights) between the scene and the shaders.
  *
- * The host keeps each light as the scene or masu_punctual_light_set has it; every frame it places them,
- * leaves out those that light nothing in the picture, and writes the rest, in the scene's order, to
- * the frame's slot of MASU_BUFFER_LIGHTS: a masu_light_header and so many masu_punctual_light_data,
- * relative to the eye. light_tiles.comp sorts them into tiles from there. */
+ * The host keeps each light as the scene or masu_punctual_light_set has it. Every frame it
+ * transforms the lights, culls those that light nothing in the image, and writes the others, in
+ * the scene's order, to the frame's slot of MASU_BUFFER_LIGHTS: a masu_light_header and the
+ * array of masu_punctual_light_data, relative to the camera. light_tiles.comp sorts them into
+ * tiles from there. */
 #ifndef MASU_PUNCTUAL_LIGHTS_H
 #define MASU_PUNCTUAL_LIGHTS_H
 
@@ -11,7 +12,7 @@
 #include "frame/local_shadows.h"
 
 typedef struct masu_lights {
-    /* plan->scene.lights of them. The instance that carries one is not its handle here, but 1 + its index;
+    /* [plan->scene.lights]. The carrying instance is stored as 1 + its index, not as its handle;
      * 0: none. */
     masu_punctual_light_state *states;
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
@@ -39,12 +40,12 @@ masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
                             masu_detail *detail);
 void masu_lights_remove(masu_lights *l, uint32_t light);
 
-/* Those that may be seen to light something to the slot; after the camera. */
+/* Writes the lights that may light something visible to the slot; after the camera. */
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
                        const masu_frame_data *f);
 
-/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the rest. After the camera,
- * before masu_temporal_read. */
+/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the
+ * rest. After the camera, before masu_temporal_read. */
 void masu_lights_cast(masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
                       const masu_bounds *bounds, masu_frame_data *f);
 

@@ -41,7 +41,7 @@ void masu_reflections_copy_scene(masu_reflections *s, const masu_frame_plan *pla
     }
 }
 
-/* Those of a place: the first, and one behind the last. */
+/* The range of traced instances in a slot: the first, and the end. */
 static uint32_t traced_of(const masu_frame_plan *plan, uint32_t place, uint32_t *end) {
     uint32_t first = masu_own_traced(plan) + place * plan->reserve.place.traced;
     *end = plan->needs.traced ? first + plan->reserve.place.traced : first;
@@ -88,8 +88,8 @@ static int origin_moved(const masu_reflections *s) {
     return memcmp(s->previous_origin, s->origin, sizeof s->origin) != 0;
 }
 
-/* Those that have moved, or all where nothing has been written yet, are placed anew. With double positions they are
- * placed relative to the origin, and so anew when it moves. */
+/* Updates the transforms of moved instances, or of all if none has been written yet. With double
+ * positions they are relative to the origin, so all are updated when it moves. */
 static void place(masu_reflections *s, const masu_instances *in, const masu_bounds *b,
                   const masu_frame_data *f) {
     int all = !s->versions || (in->low && origin_moved(s));
@@ -98,11 +98,11 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_boun
         uint32_t instance = s->traced[i];
         int none = instance == MASU_BLOB_NONE;
         if (!none && !masu_instance_dirty(in, instance) && !all) continue;
-        float rows[12] = {0}; /* no place: hidden ones are not seen */
+        float rows[12] = {0}; /* not traced: hidden instances have no transform */
         if (!none && !masu_instance_hidden(in, instance) &&
             !masu_look_untraced(&in->looks, instance))
-            masu_instance_rows_from(&in->now[instance], in->low ? in->low[instance] : NULL, in->low ? s->origin : zero,
-                                    rows);
+            masu_instance_rows_from(&in->now[instance], in->low ? in->low[instance] : NULL,
+                                    in->low ? s->origin : zero, rows);
         if (!none && s->bends && s->bends[i]) { /* its box changes */
             masu_trace_root *root = masu_trace_top_root(&s->tree, i);
             memcpy(root->box.low, b->meshes[in->meshes[instance]], sizeof root->box.low);
@@ -111,7 +111,8 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_boun
         if (f->plan->needs.query)
             s->live[i] = (uint8_t)masu_trace_places(rows);
         else
-            (void)masu_trace_top_place(&s->tree, i, rows); /* one without an inverse is not seen */
+            /* instances without an inverse are not traced */
+            (void)masu_trace_top_place(&s->tree, i, rows);
     }
 }
 
@@ -119,7 +120,8 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_boun
 static int update(masu_reflections *s, const masu_instances *in, const masu_frame_data *f) {
     int moved = origin_moved(s);
     memcpy(s->previous_origin, s->origin, sizeof s->origin);
-    if (!f->plan->needs.query) return masu_trace_top_update(&s->tree, in->low ? zero : s->origin) != MASU_TRACE_SAME;
+    if (!f->plan->needs.query)
+        return masu_trace_top_update(&s->tree, in->low ? zero : s->origin) != MASU_TRACE_SAME;
     return moved;
 }
 
@@ -130,15 +132,16 @@ static void rows_of(const struct masu_instance_data *from, const float *low,
     memcpy(to, rows, sizeof rows);
 }
 
-/* All of a slot, where anything has changed since it was written last: a frame in which nothing moves writes
- * nothing. */
+/* All of a slot, where anything has changed since it was written last: a frame in which nothing
+ * moves writes nothing. */
 void masu_reflections_write_instances(masu_reflections *s, const masu_instances *in,
                                       const masu_bounds *b, const masu_frame_data *f) {
     const masu_frame_plan *plan = f->plan;
     if (!plan->needs.traced) return;
     place(s, in, b, f);
     int changed = update(s, in, f);
-    /* What has moved stands still one frame later: that is a change of where it was. */
+    /* An instance that has moved is stationary one frame later, which changes its previous
+     * transform. */
     if (changed || in->dirty_count || s->looks != in->looks.changes || !s->versions) s->versions++;
     s->looks = in->looks.changes;
     if (s->slot_version[f->slot] == s->versions) return;
@@ -153,9 +156,11 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
     memcpy(to + 12, &header[3], 4);
     for (uint32_t i = 0; i < plan->scene.trace_instances; i++) {
         uint32_t instance = s->traced[i];
-        if (instance == MASU_BLOB_NONE) instance = masu_own_instances(plan); /* of the reserve: not looked at */
+        /* of the reserve: not looked at */
+        if (instance == MASU_BLOB_NONE) instance = masu_own_instances(plan);
         const struct masu_instance_data *now = &in->now[instance];
-        const struct masu_instance_data *before = plan->needs.velocity ? &in->previous[instance] : now;
+        const struct masu_instance_data *before =
+            plan->needs.velocity ? &in->previous[instance] : now;
         const float *low = in->low ? in->low[instance] : NULL;
         float both[2][3][4];
         rows_of(now, low, s->origin, both[0]);
@@ -193,7 +198,7 @@ void masu_reflections_read(masu_reflections *s, masu_frame_data *f) {
         u->history[2] = s->history_size[1];
     }
     if (!s->full_history) u->history[3] |= MASU_HISTORY_NO_FINE;
-    /* Of the previous frame counts what it has kept. */
+    /* The history is valid if the previous frame stored it. */
     s->full_history = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP_FINE);
     s->history = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP) ||
                  masu_has_pass(&rp->active, MASU_PASS_SPECULAR_ACCUMULATE);

@@ -23,9 +23,10 @@ void masu_sdf_copy_scene(masu_sdf *sdf, const masu_frame_plan *plan, const masu_
     sdf->bounds[1][3] = v->sdf->max_distance;
 }
 
-/* The SDF's space. Where fp32 would resolve world coordinates too coarsely at the eye, and the
- * scene's code knows of floating origins, the origin moves to a point near the eye. It lies on a grid, so that
- * it rarely moves: what the field rounds would otherwise differ from frame to frame. */
+/* The SDF's space. If fp32 resolves world coordinates too coarsely at the camera, and the
+ * scene's code supports floating origins, the origin moves to a point near the camera. It is on
+ * a grid, so that it rarely changes: rounding of the field would otherwise differ between
+ * frames. */
 static void set_origin(const masu_sdf *sdf, masu_frame_data *f) {
     struct masu_frame_uniforms *u = &f->u;
     int far = 0;

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Slow cascades are larger by this share: the view may move on by as much of their radius before
- * they have to be drawn out of turn. */
+/* Slow cascades are larger by this factor: the view may move by this share of their radius
+ * before they must be rendered out of order. */
 #define SLACK 0.1
 /* Shadows fade over the last tenth of their distance. */
 #define FADE 0.1
@@ -14,7 +14,7 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Duff et al., JCGT 6-1, 2017, with y in the place of z. */
+/* Duff et al., JCGT 6-1, 2017, with y and z exchanged. */
 void masu_shadow_axes(const double sun[3], double axis[3][3]) {
     double x = sun[0], y = sun[1], z = sun[2];
     double s = y < 0.0 ? -1.0 : 1.0, a = -1.0 / (s + y), b = x * z * a;
@@ -36,8 +36,9 @@ double masu_shadow_split(double near_distance, double distance, double lambda, u
     return lambda * first * pow(distance / first, share) + (1.0 - lambda) * distance * share;
 }
 
-/* The smallest sphere around the pyramid from the eye to `depth` touches its tip and its corners,
- * but for wide ones, whose base alone counts. Of one that begins later it touches all corners. */
+/* The smallest sphere around the pyramid from the camera to `depth` touches its tip and its
+ * corners; for wide ones it is the sphere of the base only. For a frustum that begins later it
+ * touches all corners. */
 static void sphere_of(double begin, double depth, double tan2, double *along, double *radius) {
     double middle = 0.5 * (begin + depth) * (1.0 + tan2), beyond = depth - middle;
     int wide = middle >= depth;
@@ -75,7 +76,7 @@ masu_cascade masu_cascade_fit(const masu_shadow_view *view, double depth, double
     for (uint32_t i = 0; i < 3; i++)
         c.center[i] = c.axis[0][i] * at[0] + c.axis[1][i] * at[1] + c.axis[2][i] * at[2];
     c.behind = c.radius * (1.0 + slack) + step;
-    /* By doubling: what moves does not change the scale of the depth in every frame. */
+    /* Grows by doubling, so that moving casters do not change the depth scale in every frame. */
     c.ahead = c.behind;
     int any = view->casters[0][0] <= view->casters[1][0];
     double reach = any ? fmin(support(view, c.axis[2], c.center), 1e30) : 0.0;
@@ -144,7 +145,8 @@ void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_dat
     struct masu_shadow_uniforms out;
     memset(&out, 0, sizeof out);
     double distance = (double)scene->shadow_distance, wish = (double)rung->shadow_distance;
-    double begin = view.begin = masu_shadow_begin(view.near_distance, (double)scene->shadow_distance);
+    double begin = view.begin =
+        masu_shadow_begin(view.near_distance, (double)scene->shadow_distance);
     if (wish > 0.0 && begin + wish < distance) distance = begin + wish;
     s->distance = distance;
     for (uint32_t k = 0; k < rp->cascades; k++) {
@@ -156,7 +158,8 @@ void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_dat
         masu_cascade wanted = masu_cascade_fit(&view, depth, slow ? SLACK : 0.0, rp->cascade_size);
         wanted.trimmed = !slow;
         wanted.lod_error = rung->lod_error;
-        /* By the cascade's number, so that two of the same pace take turns. */
+        /* Offset by the cascade's index, so that two of the same period are rendered in
+         * different frames. */
         int due = !slow || (f->number + k) % every == 0 || f->number - c->frame >= every;
         if (due || !c->drawn || f->cut || !masu_cascade_holds(c, &wanted)) {
             *c = wanted;

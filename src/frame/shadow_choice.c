@@ -14,7 +14,7 @@ double masu_shadow_score(double intensity, double radius, double distance) {
 void masu_shadow_wish_add(masu_shadow_wish *wish, uint32_t most, uint32_t light, double score) {
     uint32_t at = wish->count;
     if (!(score > 0.0) || !most) return;
-    while (at > 0 && score > wish->score[at - 1]) at--; /* of equals the first comes first */
+    while (at > 0 && score > wish->score[at - 1]) at--; /* equal scores: stable order */
     if (at >= most) return;
     if (wish->count < most) wish->count++;
     for (uint32_t i = wish->count - 1; i > at; i--) {
@@ -38,8 +38,9 @@ static uint32_t slot_of(const masu_shadow_slot *slots, uint32_t count, uint32_t 
     return slot;
 }
 
-/* Of the lights that are not wanted, and that may leave, the one of the lowest score. */
-static uint32_t victim_of(const masu_shadow_slot *slots, uint32_t count, const masu_shadow_wish *wish, int cut) {
+/* The unwanted light of the lowest score that may be removed. */
+static uint32_t victim_of(const masu_shadow_slot *slots, uint32_t count,
+                          const masu_shadow_wish *wish, int cut) {
     uint32_t victim = count;
     for (uint32_t s = 0; s < count; s++) {
         if (!slots[s].light || slots[s].leaves || is_wanted(wish, slots[s].light)) continue;
@@ -49,11 +50,13 @@ static uint32_t victim_of(const masu_shadow_slot *slots, uint32_t count, const m
     return victim;
 }
 
-void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most, const masu_shadow_wish *wish, uint32_t since,
+void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most,
+                        const masu_shadow_wish *wish, uint32_t since,
                         void (*left)(void *user, uint32_t slot), void *user) {
     uint32_t waiting = 0, used = 0, leaving = 0;
     int cut = since == 0;
-    for (uint32_t i = 0; i < wish->count; i++) waiting += slot_of(slots, count, wish->light[i]) == count;
+    for (uint32_t i = 0; i < wish->count; i++)
+        waiting += slot_of(slots, count, wish->light[i]) == count;
     for (uint32_t s = 0; s < count; s++) {
         masu_shadow_slot *slot = &slots[s];
         if (!slot->light) continue;
@@ -88,7 +91,8 @@ void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most, 
         if (slot_of(slots, count, wish->light[i]) < count) continue;
         uint32_t s = slot_of(slots, count, 0);
         if (s == count) break;
-        slots[s] = (masu_shadow_slot){.light = wish->light[i], .score = wish->score[i], .offered = 1};
+        slots[s] =
+            (masu_shadow_slot){.light = wish->light[i], .score = wish->score[i], .offered = 1};
         used++;
     }
 }

@@ -33,11 +33,12 @@ masu_shadow_tile masu_shadow_tile_take(masu_shadow_tiles *t, uint32_t size) {
             if (taken(t, x, y, edge)) continue;
             /* The smallest of the squares around it that is not empty: the smaller, the better. */
             uint32_t around = 2 * edge;
-            while (around < cells && !taken(t, x / around * around, y / around * around, around)) around *= 2;
+            while (around < cells && !taken(t, x / around * around, y / around * around, around))
+                around *= 2;
             if (found.size && around >= best) continue;
             best = around;
-            found = (masu_shadow_tile){(uint16_t)(x * MASU_LOCAL_TILE_LEAST), (uint16_t)(y * MASU_LOCAL_TILE_LEAST),
-                                       (uint16_t)size};
+            found = (masu_shadow_tile){(uint16_t)(x * MASU_LOCAL_TILE_LEAST),
+                                       (uint16_t)(y * MASU_LOCAL_TILE_LEAST), (uint16_t)size};
         }
     }
     if (found.size) mark(t, found);
@@ -56,7 +57,8 @@ uint32_t masu_shadow_tile_order(masu_shadow_tile tile) {
 }
 
 masu_shadow_tile masu_shadow_tile_before(const masu_shadow_tiles *t, masu_shadow_tile tile) {
-    uint32_t cell = MASU_LOCAL_TILE_LEAST, edge = tile.size / cell, best = masu_shadow_tile_order(tile);
+    uint32_t cell = MASU_LOCAL_TILE_LEAST, edge = tile.size / cell,
+             best = masu_shadow_tile_order(tile);
     masu_shadow_tile found = {0, 0, 0};
     for (uint32_t y = 0; edge && y + tile.size <= t->size; y += tile.size) {
         for (uint32_t x = 0; x + tile.size <= t->size; x += tile.size) {
@@ -78,14 +80,16 @@ void masu_shadow_tile_move(masu_shadow_tiles *t, masu_shadow_tile *tile) {
     *tile = to;
 }
 
-void masu_shadow_sizes_fit(uint32_t *sizes, const uint32_t *faces, const double *scores, uint32_t count, uint32_t size) {
+void masu_shadow_sizes_fit(uint32_t *sizes, const uint32_t *faces, const double *scores,
+                           uint32_t count, uint32_t size) {
     uint64_t area = 0, room = (uint64_t)size * size;
     for (uint32_t i = 0; i < count; i++) area += (uint64_t)sizes[i] * sizes[i] * faces[i];
     while (area > room) {
         uint32_t least = count;
         for (uint32_t i = 0; i < count; i++) {
             if (sizes[i] <= MASU_LOCAL_TILE_LEAST || !faces[i]) continue;
-            if (least == count || sizes[i] > sizes[least] || (sizes[i] == sizes[least] && scores[i] < scores[least]))
+            if (least == count || sizes[i] > sizes[least] ||
+                (sizes[i] == sizes[least] && scores[i] < scores[least]))
                 least = i;
         }
         if (least == count) return;

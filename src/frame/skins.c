@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What a float may be off by where vertices are bent, of the size of what is bent. */
+/* Bound of the relative fp32 error of skinned vertices. */
 #define ROUNDING 4e-6
 
 void masu_skins_alloc(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan) {
@@ -18,8 +18,10 @@ void masu_skins_alloc(masu_skins *s, masu_arena *arena, const masu_frame_plan *p
     s->previous = masu_arena_alloc(arena, "previous matrices", before, sizeof *s->previous, 4);
     if (scene->skin_targets) {
         before = plan->needs.velocity ? scene->skin_targets : 0;
-        s->targets = masu_arena_alloc(arena, "morph targets", scene->morph_targets, sizeof *s->targets, 8);
-        s->weights = masu_arena_alloc(arena, "morph weights", scene->skin_targets, sizeof *s->weights, 4);
+        s->targets =
+            masu_arena_alloc(arena, "morph targets", scene->morph_targets, sizeof *s->targets, 8);
+        s->weights =
+            masu_arena_alloc(arena, "morph weights", scene->skin_targets, sizeof *s->weights, 4);
         s->before = masu_arena_alloc(arena, "previous weights", before, sizeof *s->before, 4);
     }
     s->inside =
@@ -40,7 +42,8 @@ static void copy_targets(masu_skins *s, const masu_frame_plan *plan, const masu_
             const masu_blob_channel *channel = &v->channels[c];
             if (channel->path != MASU_CHANNEL_WEIGHT) continue;
             uint32_t node = v->models[clip->model].first_node + channel->node;
-            s->targets[v->skins[v->model_nodes[node].skin - 1].first_target + channel->target].driven = 1;
+            s->targets[v->skins[v->model_nodes[node].skin - 1].first_target + channel->target]
+                .driven = 1;
         }
     }
 }
@@ -107,7 +110,7 @@ static void widen(const float from[12], double to[12]) {
     for (uint32_t k = 0; k < 12; k++) to[k] = (double)from[k];
 }
 
-/* 0: it has no inverse. */
+/* Returns 0 if the matrix has no inverse. */
 static int invert(const double a[12], double out[12]) {
     double c[3][3];
     for (uint32_t i = 0; i < 3; i++) {
@@ -163,15 +166,18 @@ int masu_skins_pose(masu_skins *s, const masu_frame_plan *plan, uint32_t model,
         else
             multiply(s->inside[node->parent - first_node], local, s->inside[n]);
     }
-    for (uint32_t i = first; i < first + count; i++) finite &= pose_one(s, &s->skins[i], first_node);
+    for (uint32_t i = first; i < first + count; i++)
+        finite &= pose_one(s, &s->skins[i], first_node);
     return finite;
 }
 
 /* ---- Morph targets --------------------------------------------------------------------------- */
 
-void masu_skins_play(masu_skins *s, const masu_animation *a, const masu_frame_plan *plan, uint32_t model,
-                     uint32_t first_node, uint32_t first_clip, const masu_clip_use *uses, uint32_t count) {
-    uint32_t first = 0, skins = plan->scene.skin_targets ? masu_skins_of(s, plan, model, &first) : 0;
+void masu_skins_play(masu_skins *s, const masu_animation *a, const masu_frame_plan *plan,
+                     uint32_t model, uint32_t first_node, uint32_t first_clip,
+                     const masu_clip_use *uses, uint32_t count) {
+    uint32_t first = 0,
+             skins = plan->scene.skin_targets ? masu_skins_of(s, plan, model, &first) : 0;
     for (uint32_t i = first; i < first + skins; i++) {
         const masu_skin *skin = &s->skins[i];
         for (uint32_t t = 0; t < skin->target_count; t++) {
@@ -183,9 +189,10 @@ void masu_skins_play(masu_skins *s, const masu_animation *a, const masu_frame_pl
     }
 }
 
-uint32_t masu_skins_set(masu_skins *s, const masu_frame_plan *plan, uint32_t model, const char *name,
-                        float weight) {
-    uint32_t first = 0, skins = plan->scene.skin_targets ? masu_skins_of(s, plan, model, &first) : 0;
+uint32_t masu_skins_set(masu_skins *s, const masu_frame_plan *plan, uint32_t model,
+                        const char *name, float weight) {
+    uint32_t first = 0,
+             skins = plan->scene.skin_targets ? masu_skins_of(s, plan, model, &first) : 0;
     uint64_t hash = masu_fnv1a64(name, strlen(name));
     uint32_t found = 0;
     for (uint32_t i = first; i < first + skins; i++) {
@@ -213,7 +220,7 @@ static void morph_of(const masu_skins *s, const masu_skin *skin, double low[3], 
     }
 }
 
-/* Around what all of its joints move, object space. */
+/* Bounds of the vertices of all joints, object space. */
 static void box_of(const masu_skins *s, const masu_skin *skin, float box[6]) {
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, down[3], up[3];
     int any = 0;
@@ -273,7 +280,8 @@ static void write_one(const masu_skin *skin, uint32_t index, int hidden,
     memcpy(to + sizeof header * index, header, sizeof header);
     uint32_t count = 0;
     for (uint32_t t = 0; t < skin->target_count; t++) { /* those that do anything */
-        uint32_t target[4] = {2 * plan->scene.skin_vertices + skin->first_delta + t * skin->vertex_count};
+        uint32_t target[4] = {2 * plan->scene.skin_vertices + skin->first_delta +
+                              t * skin->vertex_count};
         if (weights[skin->first_weight + t] == 0.0f) continue;
         memcpy(&target[1], &weights[skin->first_weight + t], sizeof target[1]);
         memcpy(to + (size_t)16 * (morphs + 1 + count++), target, sizeof target);
@@ -294,8 +302,8 @@ void masu_skins_write(masu_skins *s, const masu_instances *in, const masu_frame_
         write_one(skin, i, hidden, plan, s->now, s->weights, to);
         if (!plan->needs.velocity) continue;
         int comes = f->cut || in->flags[skin->instance] & MASU_INSTANCE_COMES;
-        write_one(skin, i, hidden, plan, comes ? s->now : s->previous, comes ? s->weights : s->before,
-                  to + half);
+        write_one(skin, i, hidden, plan, comes ? s->now : s->previous,
+                  comes ? s->weights : s->before, to + half);
         memcpy(s->previous[skin->first_matrix], s->now[skin->first_matrix],
                skin->joint_count * sizeof *s->now);
         if (skin->target_count)

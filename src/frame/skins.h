@@ -1,13 +1,13 @@
-/* skins.h: meshes that joints bend: where their joints are, in each frame, and the box around what they move. The
- * host's truth as that of instances: matrices are written to a slot while it has not seen the last change, and
- * those of the previous frame beside them. The pass `skin` does the rest.
+/* skins.h: skinned meshes: joint matrices of each frame, and the bounds of the deformed vertices.
+ * As for instances, the host's copy is authoritative: matrices are written to each slot that lacks
+ * the last change, next to those of the previous frame. The pass `skin` deforms the vertices.
  *
- * A joint's matrix takes rest vertices to the object space of the instance that shows them: the node that shows
- * a skin may be anywhere, as glTF has it, and the skin stays where its joints are.
+ * A joint matrix transforms rest vertices to the object space of the instance that shows them. As
+ * in glTF, the transform of the node with the skin has no effect: the skin follows its joints.
  *
- * BOX. A vertex is a weighted mean of where its joints put it, so it lies in the hull of the boxes of what each
- * joint moves, and those are known since the scene was baked. Morph targets widen these by their own boxes times
- * their weights. */
+ * BOX. A skinned vertex is a weighted mean of its positions by each joint, so it is inside the
+ * hull of the joints' boxes, which the baker computes. Morph targets enlarge these by their own
+ * boxes times their weights. */
 #ifndef MASU_SKINS_H
 #define MASU_SKINS_H
 
@@ -27,9 +27,9 @@ typedef struct masu_skin {
     uint32_t first_weight;             /* of `weights` and `before` */
 } masu_skin;
 
-/* What a morph target adds to rest vertices, times its weight. */
+/* Offsets that a morph target adds to rest vertices, times its weight. */
 typedef struct masu_morph {
-    float low[3], high[3], rest; /* around its deltas; its weight at rest */
+    float low[3], high[3], rest; /* bounds of its offsets; its rest weight */
     uint32_t driven;             /* flag: some clip changes its weight */
     uint64_t name;
 } masu_morph;
@@ -48,23 +48,24 @@ typedef struct masu_skins {
 void masu_skins_alloc(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_skins_copy_scene(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v);
 
-/* The skins of a model: how many, and the first of them. */
+/* The skins of a model: their number and first index. */
 uint32_t masu_skins_of(const masu_skins *s, const masu_frame_plan *plan, uint32_t model,
                        uint32_t *first);
 
-/* The weights of targets that clips change, and no others: count 0 or no weights: at rest. uses: as of
- * masu_animation_pose. */
-void masu_skins_play(masu_skins *s, const masu_animation *a, const masu_frame_plan *plan, uint32_t model,
-                     uint32_t first_node, uint32_t first_clip, const masu_clip_use *uses, uint32_t count);
+/* Sets the weights of animated targets only; rest weights if count or all weights are 0. uses:
+ * as for masu_animation_pose. */
+void masu_skins_play(masu_skins *s, const masu_animation *a, const masu_frame_plan *plan,
+                     uint32_t model, uint32_t first_node, uint32_t first_clip,
+                     const masu_clip_use *uses, uint32_t count);
 /* Sets the weight of all targets of that name. How many there are. */
-uint32_t masu_skins_set(masu_skins *s, const masu_frame_plan *plan, uint32_t model, const char *name,
-                        float weight);
+uint32_t masu_skins_set(masu_skins *s, const masu_frame_plan *plan, uint32_t model,
+                        const char *name, float weight);
 
-/* After nodes of a model have moved: finds the matrices of its joints. 0: one is not finite; they are to be found
- * again once the nodes are back. */
+/* After nodes of a model have moved: finds the matrices of its joints. 0: one is not finite;
+ * they are to be found again once the nodes are back. */
 int masu_skins_pose(masu_skins *s, const masu_frame_plan *plan, uint32_t model,
                     const masu_node *nodes, uint32_t first_node, uint32_t node_count);
-/* And then tells instances and bounds. */
+/* Then updates instances and bounds. */
 void masu_skins_settle(masu_skins *s, masu_instances *in, masu_bounds *b,
                        const masu_frame_plan *plan, uint32_t model);
 

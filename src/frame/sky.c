@@ -1,10 +1,11 @@
-/* sky.c: see sky.h. Lengths in kilometres, coefficients per kilometre, in double precision: heights of
- * metres are differences of numbers as large as the earth's radius.
+/* sky.c: see sky.h. Lengths in kilometres, coefficients per kilometre, in double precision: heights
+ * of metres are differences of numbers as large as the earth's radius.
  *
- * Red, green and blue stand for the wave lengths 680, 550 and 440 nm. Coefficients of air and ozone
- * are those of Bruneton and Neyret, Precomputed Atmospheric Scattering, EGSR 2008, and Hillaire 2020.
- * Aerosol: turbidity is (air + aerosol) / air of the vertical optical depth at 550 nm (Preetham et
- * al., A Practical Analytic Model for Daylight, SIGGRAPH 1999, section 3), Angstrom's exponent 1.3. */
+ * Red, green and blue are sampled at the wavelengths 680, 550 and 440 nm. Coefficients of air
+ * and ozone are from Bruneton and Neyret, Precomputed Atmospheric Scattering, EGSR 2008, and
+ * Hillaire 2020. Aerosol: turbidity is (air + aerosol) / air of the vertical optical depth at
+ * 550 nm (Preetham et al., A Practical Analytic Model for Daylight, SIGGRAPH 1999, section 3),
+ * Angstrom's exponent 1.3. */
 #include "frame/sky.h"
 
 #include <math.h>
@@ -20,16 +21,16 @@
 #define HAZE_SCALE 1.2
 #define HAZE_ALBEDO 0.92
 #define HAZE_ASYMMETRY 0.76
-/* Half of the angle over which the earth's edge takes the sun away from a point of the air, radians:
- * the sun's radius is 0.0047. Wider, so that the shadow's edge does not jump from one point of the
- * integral to the next as the sun sets. */
+/* Half of the angle over which the earth's edge takes the sun away from a point of the air,
+ * radians: the sun's radius is 0.0047. Wider, so that the shadow's edge does not jump from one
+ * point of the integral to the next as the sun sets. */
 #define AIR_PENUMBRA 0.010
 #define DISC_RADIUS 0.0047
-/* What is left without any sun: a display's night, not nature's. */
+/* Minimum radiance without a sun, for displays; not a physical value. */
 #define NIGHT 1.5e-4
 
 #define STEPS 16        /* of a view that leaves the air */
-#define GROUND_STEPS 8 /* of one that meets the ground */
+#define GROUND_STEPS 8 /* for a ray that hits the ground */
 #define SERIES_STEPS 8
 #define AZIMUTHS 3 /* towards the sun, across, away from it */
 #define HALF (MASU_SKY_ROWS / 2)
@@ -44,7 +45,7 @@ static const double night_color[3] = {0.55, 0.75, 1.0};
 
 static double clamped(double v, double lo, double hi) { return v < lo ? lo : v > hi ? hi : v; }
 
-/* fmax and fmin ask for NaN, which costs a call each. */
+/* fmax and fmin test for NaN, which costs a call each. */
 static double most(double a, double b) { return a > b ? a : b; }
 static double least(double a, double b) { return a < b ? a : b; }
 
@@ -70,7 +71,7 @@ static double scaled_erfc(double y) {
     return (double)(a / ((a - 1.0f) * t + sqrtf(t * t + a * a)));
 }
 
-/* A point of the air and what does not depend on the sun. */
+/* A point in the atmosphere and its values that do not depend on the sun. */
 typedef struct air_point {
     double height, radius, root; /* root of the radius */
     double air, haze;            /* densities, 1 at the ground */
@@ -83,9 +84,10 @@ static air_point point_at(double height) {
 
 static double positive_root(double v) { return v > 0.0 ? sqrt(v) : 0.0; }
 
-/* Density summed along the ray from a point, of what falls by e over `scale`: Chapman's function for
- * rays that rise (as Fitzmaurice, Applied Optics 3, 1964, approximates it); a ray that falls is the
- * whole one through its lowest point less what lies behind. `low` is that point's height. */
+/* Optical path from a point through a density that falls by e over `scale`: Chapman's function
+ * for rising rays (approximated as in Fitzmaurice, Applied Optics 3, 1964); a falling ray is the
+ * whole ray through its lowest point minus the part behind the point. `low` is that point's
+ * height. */
 static double slant(const air_point *at, double density, double mu, double low, double scale) {
     double root = sqrt(0.5 * PI * scale), to_erfc = sqrt(0.5 / scale);
     double up = density * root * at->root * scaled_erfc(to_erfc * at->root * fabs(mu));
@@ -102,7 +104,7 @@ static double ozone_slant(double r, double mu, double p2) {
     return OZONE_DENSITY * (mu >= 0.0 ? above : 2.0 * (high - low) - above);
 }
 
-/* What the earth's edge leaves of the sun, `half` being half of the angle over which it goes. */
+/* The share of the sun above the earth's edge; `half` is half of the angle of the transition. */
 static double above_edge(const air_point *at, double mu, double half) {
     if (mu > half) return 1.0;
     double edge = -positive_root(at->height * (EARTH + at->radius)) / at->radius;
@@ -135,7 +137,7 @@ void masu_sky_transmittance(double height, double mu, double turbidity, double o
 
 /* ---- A path through the air ------------------------------------------------------------------ */
 
-/* Points along a ray, each standing for a piece of it. */
+/* Samples along a ray with the length of their segments. */
 typedef struct air_step {
     air_point at;
     double distance;
@@ -148,12 +150,13 @@ typedef struct air_path {
     uint32_t count;
     int ground;
     double length;
-    double left[3]; /* of light that comes from its end */
+    double left[3]; /* transmittance from the segment's end */
 } air_path;
 
-/* The ray from `height` upwards by the sine `mu`. Pieces grow with the cube of their number: density is
- * greatest near the ground. Within one, light is scattered and lost evenly (Hillaire, Physically
- * Based Sky, Atmosphere and Cloud Rendering in Frostbite, SIGGRAPH 2016 course, section 5.6.3). */
+/* The ray from `height` upwards by the sine `mu`. Pieces grow with the cube of their number:
+ * density is greatest near the ground. Within one, light is scattered and lost evenly (Hillaire,
+ * Physically Based Sky, Atmosphere and Cloud Rendering in Frostbite, SIGGRAPH 2016 course,
+ * section 5.6.3). */
 static void build_path(double height, double mu, const double haze[3], uint32_t steps,
                        uint32_t ground_steps, air_path *path) {
     double r = EARTH + height, b = r * mu;
@@ -188,8 +191,8 @@ static void build_path(double height, double mu, const double haze[3], uint32_t 
     }
 }
 
-/* Cosine of the sun's zenith angle at a distance on the path. cosine: of the angle between the view's
- * and the sun's azimuth times both sines of zenith angles. */
+/* Cosine of the sun's zenith angle at a distance on the path. cosine: of the angle between the
+ * view's and the sun's azimuth times both sines of zenith angles. */
 static double sun_there(double start, double mu, double distance, double radius, double cosine,
                         double sun_y) {
     double y = (start + distance * mu) * sun_y;
@@ -217,9 +220,9 @@ static double node_mu(uint32_t j) {
     return t * fabs(t);
 }
 
-/* One node of the table: what comes from all sides at a point after one more event, and the share of
- * it that the next event passes on; the series of those has a sum. Four rings of directions, three of
- * each on one side of the sun. */
+/* One node of the table: radiance from all directions at a point after one more scattering
+ * event, and the share that the next event passes on; the geometric series gives the sum. Four
+ * rings of directions, three of each on one side of the sun. */
 static void series(masu_sky *sky, uint32_t i, uint32_t j, const double haze[3]) {
     /* Gauss-Legendre over the cosine, order 4 (Abramowitz and Stegun, 25.4.30). */
     static const double node[4] = {-0.861136311594053, -0.339981043584856, 0.339981043584856,
@@ -263,7 +266,8 @@ static void series(masu_sky *sky, uint32_t i, uint32_t j, const double haze[3]) 
 
 static void multiple_at(const masu_sky *sky, double height, double mu, double out[3]) {
     double x = mu_to_node(mu), y = sqrt(least(height / 50.0, 1.0)) * (MASU_SKY_HEIGHTS - 1);
-    uint32_t j = (uint32_t)least(x, MASU_SKY_SUNS - 2), i = (uint32_t)least(y, MASU_SKY_HEIGHTS - 2);
+    uint32_t j = (uint32_t)least(x, MASU_SKY_SUNS - 2),
+             i = (uint32_t)least(y, MASU_SKY_HEIGHTS - 2);
     x -= j, y -= i;
     /* Beyond the table night has fallen. */
     double night = smooth((mu + FALLEN) / 0.05);
@@ -279,11 +283,11 @@ static void multiple_at(const masu_sky *sky, double height, double mu, double ou
 typedef struct row_values {
     double term[AZIMUTHS][MASU_SKY_TERMS][3]; /* no direction, Rayleigh, aerosol */
     double ground[AZIMUTHS][3]; /* irradiance / pi of the sun on the ground there */
-    double left[3];             /* of what the ground sends; 0: the row sees none */
+    double left[3]; /* transmittance of the ground's light; 0: the row does not see the ground */
 } row_values;
 
-/* The horizon as seen from EYE lies a little below the level; the table's horizon is at the level,
- * where the scene's own ground ends. */
+/* The horizon from the height EYE is slightly below the level; the table's horizon is at the
+ * level, where the scene's ground ends. */
 static double row_sine(uint32_t row) {
     double t = ((double)row + 0.5 - HALF) / (HALF - 0.5), y = t * fabs(t);
     double dip = -sqrt(EYE * (2.0 * EARTH + EYE)) / (EARTH + EYE);
@@ -325,9 +329,10 @@ static void fill_row(masu_sky *sky, uint32_t row, const double haze[3], double s
     }
 }
 
-/* The polynomial through the three azimuths, of logarithms: they are nearly straight, for towards the
- * sun the light falls off exponentially at dusk. Where one side lies in the earth's shadow it would
- * rise above both ends in between; the dark end is raised until its summit is the bright one. */
+/* The polynomial through the logarithms at three azimuths: they are nearly linear, because
+ * towards the sun the light falls off exponentially at dusk. If one side is in the earth's
+ * shadow, the polynomial would exceed both ends in between; the dark end is raised until the
+ * maximum is the bright end. */
 static void store_row(masu_sky *sky, uint32_t row, const row_values *v) {
     masu_vec4 *to = &sky->uniforms.rows[row * MASU_SKY_ROW];
     for (uint32_t t = 0; t < MASU_SKY_TERMS; t++) {
@@ -373,7 +378,7 @@ static void basis(const double d[3], double out[9]) {
     out[8] = d[0] * d[0] - d[2] * d[2];
 }
 
-/* Light from d; more or less of it in band 0 and in band 2. */
+/* Adds light from d with separate weights of band 0 and band 2. */
 static void add_bands(masu_sky_irradiance *to, const double d[3], const double light[3],
                       const double even[3], const double two[3]) {
     double b[9];
@@ -412,8 +417,8 @@ void masu_sky_irradiance_at(const masu_sky_irradiance *s, const float n[3], floa
     }
 }
 
-/* Where the sky is looked at for its irradiance: over the elevation by midpoints of u, with
- * y = u^3 (4 - 3u), close together at the horizon and, for a high sun's aureole, at the zenith. */
+/* Sample directions for the irradiance: midpoints of u over the elevation, with y = u^3 (4 -
+ * 3u), dense at the horizon and, for a high sun's aureole, at the zenith. */
 #define RINGS 24
 #define RING_POINTS 14
 #define GLOW_LOWEST 0.08
@@ -461,7 +466,7 @@ static void on_ground(const sky_half *half, double out[3]) {
     }
 }
 
-/* In the frame in which the sun stands over +x, what is odd in z cancels. */
+/* In the frame with the sun over +x, terms odd in z cancel. */
 static void add_half(masu_sky_irradiance *to, const sky_half *half) {
     static const uint32_t even[6] = {0, 1, 2, 4, 7, 8};
     for (uint32_t r = 0; r < RINGS; r++) {
@@ -470,7 +475,8 @@ static void add_half(masu_sky_irradiance *to, const sky_half *half) {
         for (uint32_t p = 0; p < RING_POINTS; p++) {
             basis(half->points[r][p].direction, b);
             for (uint32_t k = 0; k < 6; k++)
-                for (uint32_t c = 0; c < 3; c++) sum[k][c] += b[even[k]] * half->points[r][p].light[c];
+                for (uint32_t c = 0; c < 3; c++)
+                    sum[k][c] += b[even[k]] * half->points[r][p].light[c];
         }
         for (uint32_t k = 0; k < 6; k++) {
             for (uint32_t c = 0; c < 3; c++)
@@ -479,22 +485,23 @@ static void add_half(masu_sky_irradiance *to, const sky_half *half) {
     }
 }
 
-/* What order 2 leaves of a clamped cosine is its band 4, then 6 (the odd ones above 1 are 0). Of a sky
- * the most of band 4 is the aureole around the sun, then the bright ring above the horizon. So as much
- * light as has the sky's band 4 along the aureole's middle is taken out of the coefficients and put
- * into a lobe of its own, and what is left along the vertical is kept as a tenth function.
+/* The residual of a clamped cosine after order 2 is its band 4, then 6 (the odd ones above 1 are
+ * 0). Most of a sky's band 4 is the aureole around the sun, then the bright ring above the horizon.
+ * So light equal to the sky's band 4 along the aureole's centre is moved from the coefficients to a
+ * separate lobe, and the residual along the vertical is kept as a tenth function.
  *
- * The lobe is a clamped cosine whose corner is rounded over +-w, with w so that its bands 4 and 6
- * relate to the clamped cosine's about as those of the aerosol's phase function do:
- * (c + w)^2 / 4w for |c| < w, which has 1 + w^2 / 3, 1, 1 - 2/3 w^2 + w^4 / 5 and (1 - w^2)^3 times
- * the bands 0, 1, 2 and 4 of a clamped cosine. */
+ * The lobe is a clamped cosine whose corner is rounded over +-w, with w so that its bands 4 and
+ * 6 relate to the clamped cosine's about as those of the aerosol's phase function do: (c + w)^2
+ * / 4w for |c| < w, which has 1 + w^2 / 3, 1, 1 - 2/3 w^2 + w^4 / 5 and (1 - w^2)^3 times the
+ * bands 0, 1, 2 and 4 of a clamped cosine. */
 #define LOBE_0 (1.0 + ROUND * ROUND / 3.0)
 #define LOBE_2 (1.0 - ROUND * ROUND * (2.0 / 3.0 - ROUND * ROUND / 5.0))
 #define LOBE_4 ((1.0 - ROUND * ROUND) * (1.0 - ROUND * ROUND) * (1.0 - ROUND * ROUND))
 #define ROUND ((double)MASU_SKY_ROUND)
 
 /* Band 4 along d and along the vertical. */
-static void measure_band_4(const sky_half *half, const double d[3], double glow[3], double ring[3]) {
+static void measure_band_4(const sky_half *half, const double d[3], double glow[3],
+                           double ring[3]) {
     for (uint32_t r = 0; r < RINGS; r++) {
         for (uint32_t p = 0; p < RING_POINTS; p++) {
             const double *at = half->points[r][p].direction;
@@ -507,8 +514,8 @@ static void measure_band_4(const sky_half *half, const double d[3], double glow[
     }
 }
 
-/* Least squares of band 4 by its two zonal functions, along d and along the vertical. Where these are
- * one, at noon under the tropics, the ridge shares it evenly. */
+/* Least squares of band 4 by its two zonal functions, along d and along the vertical. Where
+ * these are one, at noon under the tropics, the ridge shares it evenly. */
 static void take_band_4(masu_sky_irradiance *to, const double d[3], const double glow[3],
                         const double ring[3]) {
     const double ridge = 1.02;
@@ -528,8 +535,8 @@ static void take_band_4(masu_sky_irradiance *to, const double d[3], const double
     add_bands(to, d, k, even, two);
 }
 
-/* The middle of what is bright: the sun, but never below GLOW_LOWEST, where at dusk the light comes
- * from. */
+/* The centre of the bright area: the sun, but never below GLOW_LOWEST, from which the light
+ * arrives at dusk. */
 static void glow_direction(double sun_y, double out[3]) {
     double above = sun_y - GLOW_LOWEST;
     out[1] = GLOW_LOWEST + 0.5 * (above + sqrt(above * above + 0.01));
@@ -538,7 +545,7 @@ static void glow_direction(double sun_y, double out[3]) {
     out[2] = 0.0;
 }
 
-/* From the frame in which the sun stands over +x to the world's; what is odd in z is not there. */
+/* Rotates from the frame with the sun over +x to the world's; terms odd in z are 0. */
 static void turn(masu_sky_irradiance *s, double x, double z) {
     for (uint32_t c = 0; c < 3; c++) {
         double across = (double)s->sh[1][c], tilted = (double)s->sh[4][c];
@@ -552,13 +559,13 @@ static void turn(masu_sky_irradiance *s, double x, double z) {
     }
 }
 
-/* ---- All of it ------------------------------------------------------------------------------- */
+/* ---- Update ---------------------------------------------------------------------------------- */
 
-/* The disc goes behind the horizon as seen from the eye, which the table puts at the level. */
+/* The disc sets at the horizon as seen from the camera, which the table puts at the level. */
 static void sun_disc(masu_sky *sky, const double haze[3], double sun_y) {
     double light[3], seen = smooth(0.5 + 0.5 * sun_y / DISC_RADIUS);
     double dip = sqrt(EYE * (2.0 * EARTH + EYE)) / (EARTH + EYE);
-    /* The part of it that is above. */
+    /* The visible part of the disc. */
     double middle = most(sun_y, 0.5 * (sun_y + DISC_RADIUS)) - dip * (1.0 - fabs(sun_y));
     air_point eye = point_at(EYE);
     sun_light(&eye, clamped(middle, -1.0, 1.0), haze, 1e-6, light);
@@ -622,7 +629,7 @@ int masu_sky_update(masu_sky *sky, const float sun[3], float turbidity, const fl
     float unit[3] = {0.0f, 1.0f, 0.0f}, albedo[3];
     if (length > 0.0 && isfinite(length))
         for (uint32_t k = 0; k < 3; k++) unit[k] = (float)(s[k] / length);
-    /* These also turn NaN into a number. */
+    /* These also replace NaN by a number. */
     turbidity = fminf(fmaxf(turbidity, MASU_SKY_TURBIDITY_MIN), MASU_SKY_TURBIDITY_MAX);
     for (uint32_t c = 0; c < 3; c++) albedo[c] = fminf(fmaxf(ground[c], 0.0f), 1.0f);
     int air = !sky->valid || memcmp(&turbidity, &sky->turbidity, sizeof turbidity) != 0 ||

@@ -1,20 +1,19 @@
 /* sky.h: the analytic sky: radiance of the clear sky for a position of the sun, the sun's colour
- * behind the air, and irradiance as spherical harmonics.
+ * after the atmosphere, and irradiance as spherical harmonics.
  *
- * The model is an atmosphere of three things around a sphere: air (Rayleigh), aerosol, ozone. Light
- * scattered once is integrated along the view; what is scattered more often comes from a series that
- * takes it to be without direction (Hillaire, A Scalable and Production Ready Sky and Atmosphere
- * Rendering Technique, EGSR 2020, section 5.5). From a fixed height the sky depends on the view's
- * elevation and its azimuth from the sun alone, and apart from the phase functions only weakly on the
- * latter: a table over the elevation, with a polynomial of the azimuth's cosine in each row, is all a
- * shader needs.
+ * The model is an atmosphere of air (Rayleigh), aerosol and ozone around a sphere. Single
+ * scattering is integrated along the view ray; multiple scattering is an isotropic series
+ * (Hillaire, A Scalable and Production Ready Sky and Atmosphere Rendering Technique, EGSR 2020,
+ * section 5.5). At a fixed height the sky depends only on the view's elevation and its azimuth from
+ * the sun, and apart from the phase functions only weakly on the azimuth: a shader needs only a
+ * table over the elevation, with a polynomial of the azimuth's cosine in each row.
  *
- * Whoever holds a masu_sky owns all of it; nothing is allocated, nothing fails: any sun, turbidity
- * and ground give finite numbers. Two tables live here: `multiple` changes with turbidity and ground,
- * the rest with the sun too. masu_sky_update computes only what has changed.
+ * The caller owns the masu_sky; nothing is allocated, nothing fails: any sun, turbidity and ground
+ * give finite numbers. It has two tables: `multiple` depends on turbidity and ground, the other
+ * also on the sun. masu_sky_update computes only the changed ones.
  *
- * Units: radiance and irradiance / pi as in masu_light; the sun has MASU_SKY_SUN outside of the air.
- * Directions: +Y up. */
+ * Units: radiance and irradiance / pi as in masu_light; the sun has MASU_SKY_SUN outside of the
+ * air. Directions: +Y up. */
 #ifndef MASU_SKY_H
 #define MASU_SKY_H
 
@@ -42,7 +41,7 @@ typedef struct masu_sky_irradiance {
 } masu_sky_irradiance;
 
 typedef struct masu_sky {
-    /* what the tables are of; valid 0: of nothing yet */
+    /* inputs of the tables; valid 0: not computed yet */
     uint32_t valid;
     float turbidity, ground[3], sun[3];
     float multiple[MASU_SKY_HEIGHTS][MASU_SKY_SUNS][3]; /* per steradian, of irradiance 1 */
@@ -53,16 +52,17 @@ typedef struct masu_sky {
     uint64_t steps;                    /* points of the air looked at in all that */
 } masu_sky;
 
-/* Computes what `sun` (towards it, any length but 0), turbidity and ground albedo have changed since
- * the last call. `sky` is zeroed before the first. Returns 1 if anything was computed. What is out of
- * range is clamped, what is not finite becomes a sun straight up, the least turbidity, no albedo. */
+/* Recomputes the tables whose inputs have changed since the last call: `sun` (towards it, any
+ * length but 0), turbidity and ground albedo. `sky` is zeroed before the first call. Returns 1
+ * if anything was computed. Values out of range are clamped; values that are not finite become a
+ * sun straight up, the least turbidity, no albedo. */
 int masu_sky_update(masu_sky *sky, const float sun[3], float turbidity, const float ground[3]);
 
 /* Irradiance / pi on a surface of unit normal n. */
 void masu_sky_irradiance_at(const masu_sky_irradiance *irradiance, const float n[3], float out[3]);
 
-/* Parts of the model, for tests. Share of the sun's light that comes to `height` km above the ground
- * under a sun of zenith cosine `mu`, by wave length; 0 behind the horizon. */
+/* Parts of the model, for tests. Transmittance of the sun's light to `height` km above the
+ * ground under a sun of zenith cosine `mu`, per wavelength; 0 below the horizon. */
 void masu_sky_transmittance(double height, double mu, double turbidity, double out[3]);
 
 #endif

@@ -14,7 +14,8 @@ static float haze_phase(float cosine, float g) {
 static float air_phase(float cosine) { return 0.0596831037f * (1.0f + cosine * cosine); }
 
 /* The terms of a row between two, at a cosine of azimuth. */
-static void look_up(const struct masu_sky_uniforms *sky, float y, float x, float out[MASU_SKY_TERMS][3]) {
+static void look_up(const struct masu_sky_uniforms *sky, float y, float x,
+                    float out[MASU_SKY_TERMS][3]) {
     const float half = (float)(MASU_SKY_ROWS / 2);
     float t = y < 0.0f ? -sqrtf(-y) : sqrtf(y);
     float at = fminf(fmaxf((half - 0.5f) * (1.0f + t), 0.0f), (float)MASU_SKY_ROWS - 1.0f);
@@ -46,7 +47,7 @@ void masu_sky_radiance(const struct masu_sky_uniforms *sky, const float d[3], fl
                       fminf(fmaxf(cosine, -1.0f), 1.0f), out);
 }
 
-/* What fog far away has for a colour, but for the phase functions. */
+/* The colour of distant fog, without the phase functions. */
 static void fill_horizon(struct masu_sky_uniforms *sky) {
     for (uint32_t a = 0; a < MASU_SKY_AZIMUTHS; a++) {
         float terms[MASU_SKY_TERMS][3];
@@ -56,15 +57,16 @@ static void fill_horizon(struct masu_sky_uniforms *sky) {
     }
 }
 
-/* The bands 1 and 2 of a lobe of the roughness that `rough` is for: masu_lobe_bands of shaders/light/ambient.glsl. */
+/* The bands 1 and 2 of a lobe of the roughness that `rough` is for: masu_lobe_bands of
+ * shaders/light/ambient.glsl. */
 #define BAND_1 0.9188f
 #define BAND_2 0.7874f
-/* Looks of one node over the elevation, and how far the outermost is from the middle. */
+/* Samples per node over the elevation, and the distance of the outermost from the centre. */
 #define LOOKS 5
 #define SPREAD 1.0f
 
-/* The sky blurred as by a lobe of that roughness: both phase functions exactly so, for their bands are powers; of the
- * rest the elevation, by looks. */
+/* The sky blurred as by a lobe of that roughness: both phase functions exactly so, for their
+ * bands are powers; of the rest the elevation, by looks. */
 static void fill_rough(struct masu_sky_uniforms *sky) {
     float sun_y = sky->sun[1], across = sqrtf(fmaxf(1.0f - sun_y * sun_y, 0.0f));
     for (uint32_t row = 0; row < MASU_SKY_ROUGH_ROWS; row++) {
@@ -72,15 +74,18 @@ static void fill_rough(struct masu_sky_uniforms *sky) {
         float flat = sqrtf(fmaxf(1.0f - y * y, 0.0f));
         float width = 0.45f * sqrtf((1.0f - BAND_2) * (1.0f - 0.9f * y * y));
         for (uint32_t a = 0; a < MASU_SKY_ROUGH_AZIMUTHS; a++) {
-            float half = (float)a * (1.0f / (MASU_SKY_ROUGH_AZIMUTHS - 1)), x = 1.0f - 2.0f * half * half;
+            float half = (float)a * (1.0f / (MASU_SKY_ROUGH_AZIMUTHS - 1)),
+                  x = 1.0f - 2.0f * half * half;
             float cosine = flat * x * across + y * sun_y, sum[3] = {0.0f, 0.0f, 0.0f};
             float air = 0.0795774715f * (1.0f + BAND_2 * (0.75f * cosine * cosine - 0.25f));
             float haze = haze_phase(cosine, sky->sun[3] * BAND_1);
             for (uint32_t i = 0; i < LOOKS; i++) {
-                float terms[MASU_SKY_TERMS][3], away = width * SPREAD * ((float)i * (2.0f / (LOOKS - 1)) - 1.0f);
+                float terms[MASU_SKY_TERMS][3],
+                    away = width * SPREAD * ((float)i * (2.0f / (LOOKS - 1)) - 1.0f);
                 look_up(sky, fminf(fmaxf(y + away, -1.0f), 1.0f), x, terms);
                 for (uint32_t c = 0; c < 3; c++)
-                    sum[c] += (terms[0][c] + air * terms[1][c] + haze * terms[2][c]) * (1.0f / LOOKS);
+                    sum[c] +=
+                        (terms[0][c] + air * terms[1][c] + haze * terms[2][c]) * (1.0f / LOOKS);
             }
             memcpy(sky->rough[row * MASU_SKY_ROUGH_AZIMUTHS + a], sum, sizeof sum);
         }

@@ -1,6 +1,7 @@
-/* sky_table.h: looking into the analytic sky's table (struct masu_sky_uniforms, of which sky.c computes the rows), and
- * what follows from the rows alone: the sky beyond fog and the sky as rough surfaces mirror it, in tables of their
- * own, for a look by the rows is nine powers of two. shaders/light/sky.glsl has the twins.
+/* sky_table.h: evaluates the analytic sky's table (struct masu_sky_uniforms; sky.c computes the
+ * rows), and derives separate tables from the rows: the sky beyond fog, and the sky in rough
+ * reflections. They save the nine powers of two of an evaluation by rows. shaders/light/sky.glsl
+ * has the same functions.
  *
  * Nothing is allocated, nothing fails. */
 #ifndef MASU_SKY_TABLE_H
@@ -11,7 +12,8 @@
 /* Radiance towards a unit direction, without the sun's disc: the twin of masu_sky_light. */
 void masu_sky_radiance(const struct masu_sky_uniforms *sky, const float direction[3], float out[3]);
 
-/* Radiance at a sine of elevation, a cosine of azimuth from the sun, and a cosine to the sun, all -1..1. */
+/* Radiance at a sine of elevation, a cosine of azimuth from the sun, and a cosine to the sun,
+ * all -1..1. */
 void masu_sky_evaluate(const struct masu_sky_uniforms *sky, float y, float x, float cosine,
                        float out[3]);
 

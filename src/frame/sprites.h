@@ -1,6 +1,7 @@
-/* sprites.h: what a frame brings with it: particles, decals, debug lines. The host's arrays are read in masu_frame and
- * written to the slot's part of one buffer, whose layout masu_shared.h has; recordings hold indirect draws and a
- * dispatch whose counts lie there too. Of no length and no work where desc.reserve has none. */
+/* sprites.h: a frame's particles, decals and debug lines. masu_frame reads the host's arrays and
+ * writes them to the slot's part of one buffer (layout in masu_shared.h). Recordings contain
+ * indirect draws and a dispatch, whose counts are in the same buffer. Empty and without work if
+ * desc.reserve has none. */
 #ifndef MASU_SPRITES_H
 #define MASU_SPRITES_H
 
@@ -20,9 +21,12 @@ typedef struct masu_sprites {
 void masu_sprites_alloc(masu_sprites *s, masu_arena *arena, const masu_frame_plan *plan);
 
 /* MASU_ERROR_LIMIT: more than desc.reserve. MASU_ERROR_ARGUMENT: NULL with a count. */
-masu_result masu_sprites_check(const masu_desc *d, const masu_frame_desc *frame, masu_detail *detail);
+masu_result masu_sprites_check(const masu_desc *d, const masu_frame_desc *frame,
+                               masu_detail *detail);
 
-/* After masu_transparents_write, which says what is drawn among the particles. */
-void masu_sprites_write(masu_sprites *s, const masu_transparents *transparents, const masu_frame_data *f);
+/* After masu_transparents_write, which chooses the transparents that are drawn between the
+ * particles. */
+void masu_sprites_write(masu_sprites *s, const masu_transparents *transparents,
+                        const masu_frame_data *f);
 
 #endif

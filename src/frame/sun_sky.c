@@ -28,8 +28,9 @@ static masu_result check_sky(const masu_frame_plan *plan, const masu_light *ligh
         return bad(detail, "light.turbidity", light->turbidity, "0 and 1.5 to 10");
     }
     if (!plan->needs.sky) {
-        return bad(detail, "light.turbidity", light->turbidity,
-                   "others than 0 only with a scene that has an analytic sky, or desc.analytic_sky");
+        return bad(
+            detail, "light.turbidity", light->turbidity,
+            "others than 0 only with a scene that has an analytic sky, or desc.analytic_sky");
     }
     return MASU_OK;
 }
@@ -115,11 +116,12 @@ static masu_result check_environment(const masu_frame_plan *plan, const masu_env
                              1e9f, "0 to 1e9");
     if (result) return result;
     if (!rotation_of(e->rotation, rotation))
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light.environment.rotation", 0, 0,
-                         "light.environment.rotation is (%g, %g, %g, %g), needed is a quaternion of "
-                         "a length from 1e-10 to 1e10, or all 0",
-                         (double)e->rotation[0], (double)e->rotation[1], (double)e->rotation[2],
-                         (double)e->rotation[3]);
+        return masu_fail(
+            detail, MASU_ERROR_ARGUMENT, "light.environment.rotation", 0, 0,
+            "light.environment.rotation is (%g, %g, %g, %g), needed is a quaternion of "
+            "a length from 1e-10 to 1e10, or all 0",
+            (double)e->rotation[0], (double)e->rotation[1], (double)e->rotation[2],
+            (double)e->rotation[3]);
     int map = e->intensity != 0.0f || !is_zero(e->tint, 3) || !is_zero(e->rotation, 4);
     int any = map || e->background_intensity != 0.0f || !is_zero(e->background_color, 3);
     if (any && !plan->desc.live_environment)
@@ -143,7 +145,8 @@ static masu_result check_colors(const masu_light *light, masu_detail *detail) {
     return result;
 }
 
-/* The eye's height over the fog's in double: far up, neither is known to a metre as a float. */
+/* The camera's height above the fog's in double: at large heights a float resolves neither to a
+ * metre. */
 static void write_fog(const masu_light *light, double eye_y, struct masu_frame_uniforms *u) {
     memcpy(u->fog, light->fog_color, sizeof light->fog_color);
     u->fog[3] = light->fog_density;
@@ -227,8 +230,8 @@ static void rotate_irradiance(double r[3][3], masu_vec4 sh[9]) {
     memcpy(sh, out, sizeof out);
 }
 
-/* light.environment: of the irradiance in the uniforms, and what shaders do to the map and the
- * background. */
+/* Applies light.environment to the irradiance in the uniforms, and writes the factors of the map
+ * and the background. */
 static void write_environment(const masu_environment *e, struct masu_frame_uniforms *u) {
     double r[3][3];
     const float tint[3] = {1.0f, 1.0f, 1.0f}, *hue = is_zero(e->tint, 3) ? tint : e->tint;
@@ -246,7 +249,7 @@ static void write_environment(const masu_environment *e, struct masu_frame_unifo
     u->background[3] = factor_of(e->background_intensity);
 }
 
-/* The masu_light as it is, and the irradiance of a sky that is not analytic. */
+/* Writes the masu_light, and the irradiance of a sky that is not analytic. */
 static void write_light(const masu_sun_sky *s, masu_frame_data *f) {
     struct masu_frame_uniforms *u = &f->u;
     const masu_light *light = &f->light;
@@ -278,9 +281,10 @@ masu_result masu_sun_sky_read(const masu_sun_sky *s, masu_frame_data *f, masu_de
         return bad(detail, "light.exposure", light.exposure, "0 and 1e-9 to 1e9");
     if (!masu_unit(light.sun_direction, f->u.sun_direction)) {
         const float *v = light.sun_direction;
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light.sun_direction", 0, 0,
-                         "light.sun_direction is (%g, %g, %g), needed is a direction: finite, not zero",
-                         (double)v[0], (double)v[1], (double)v[2]);
+        return masu_fail(
+            detail, MASU_ERROR_ARGUMENT, "light.sun_direction", 0, 0,
+            "light.sun_direction is (%g, %g, %g), needed is a direction: finite, not zero",
+            (double)v[0], (double)v[1], (double)v[2]);
     }
     masu_result result = check_colors(&light, detail);
     if (!result) result = check_sky(f->plan, &light, detail);

@@ -1,5 +1,5 @@
-/* sun_sky.h: sun, sky and fog of a frame: what the host gives or the scene has, checked, and what follows
- * from an analytic sky. */
+/* sun_sky.h: sun, sky and fog of a frame: checks the host's or the scene's values, and derives
+ * light from an analytic sky. */
 #ifndef MASU_SUN_SKY_H
 #define MASU_SUN_SKY_H
 
@@ -19,8 +19,8 @@ void masu_sun_sky_copy_scene(masu_sun_sky *s, const masu_scene_view *v);
 /* The scene's. */
 masu_light masu_sun_sky_light(const masu_sun_sky *s);
 
-/* Checks the light of a frame, after its camera; what does not follow from an analytic sky into the
- * uniforms. */
+/* Checks the light of a frame, after its camera, and writes the uniforms that do not depend on
+ * an analytic sky. */
 masu_result masu_sun_sky_read(const masu_sun_sky *s, masu_frame_data *f, masu_detail *detail);
 /* The frame's analytic sky, or that it has none, to the slot; its light into the uniforms. */
 void masu_sun_sky_write(masu_sun_sky *s, masu_frame_data *f);

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Frames for which a change is looked for: as many as put samples all over a pixel, and so find what it was; and
+/* Frames for which a change may affect the history: enough to put samples all over a pixel, and
  * as long as a cascade of the shadow map may take to show it. */
 #define SETTLING 16u
 
@@ -17,7 +17,7 @@ static uint32_t settling(const masu_frame_data *f) {
     return SETTLING + most;
 }
 
-/* Whether two rungs show the same but for their size. */
+/* Whether two rungs differ only in render size. */
 static int shows_the_same(const masu_rung *a, const masu_rung *b) {
     masu_rung other = *b;
     other.scale = a->scale;
@@ -28,8 +28,8 @@ static int shows_the_same(const masu_rung *a, const masu_rung *b) {
     return memcmp(a, &other, sizeof other) == 0;
 }
 
-/* The digits of n, mirrored at the point (J. Halton, "Algorithm 247: Radical-inverse quasi-random point sequence",
- * 1964). */
+/* The digits of n, mirrored at the point (J. Halton, "Algorithm 247: Radical-inverse
+ * quasi-random point sequence", 1964). */
 static float mirrored(uint32_t n, uint32_t base) {
     double value = 0.0, digit = 1.0;
     for (; n; n /= base) {
@@ -43,7 +43,7 @@ static int has_resolve(const masu_frame_data *f) {
     return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_FIND);
 }
 
-/* From 1 on: the first place of Halton's sequence is the corner. */
+/* From 1 on: the first point of Halton's sequence is the corner. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
     double pixels = (double)render.width * render.height;
     double phases = fmin(ceil(16.0 * shown.width * shown.height / pixels), 1024.0);
@@ -56,18 +56,19 @@ float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     jitter[0] = jitter[1] = 0.0f;
     if (!has_resolve(f)) return 0.0f;
-    masu_temporal_place((VkExtent2D){rp->render_width, rp->render_height}, f->plan->desc.output, f->number, jitter);
+    masu_temporal_place((VkExtent2D){rp->render_width, rp->render_height}, f->plan->desc.output,
+                        f->number, jitter);
     return 0.5f;
 }
 
 /* Whether the light or the SDF differs from that of the frame before, or is metered and may. */
-static int has_changed(const struct masu_frame_uniforms *now, const struct masu_frame_uniforms *before,
-                       const masu_frame_plan *plan) {
+static int has_changed(const struct masu_frame_uniforms *now,
+                       const struct masu_frame_uniforms *before, const masu_frame_plan *plan) {
     size_t from = offsetof(struct masu_frame_uniforms, sun_direction);
     size_t to = offsetof(struct masu_frame_uniforms, air);
     if (plan->needs.metered) return 1;
     if (memcmp((const char *)now + from, (const char *)before + from, to - from) != 0) return 1;
-    /* air[0] is of the eye, too. */
+    /* air[0] also depends on the camera. */
     if (memcmp(now->air + 1, before->air + 1, 3 * sizeof *now->air) != 0) return 1;
     float higher = (now->eye_hi[1] - now->air[0]) - (before->eye_hi[1] - before->air[0]);
     if (now->fog[3] > 0.0f && fabsf(higher) > 1e-3f * (1.0f + fabsf(now->eye_hi[1]))) return 1;
@@ -78,14 +79,16 @@ static int has_changed(const struct masu_frame_uniforms *now, const struct masu_
     return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
 }
 
-/* Whether the eye is elsewhere than in the frame before: the sky rests then, too, and what has hidden it does not. */
-static int eye_moves(const struct masu_frame_uniforms *now, const struct masu_frame_uniforms *before) {
+/* Whether the camera has moved since the previous frame: its static sky is then disoccluded. */
+static int eye_moves(const struct masu_frame_uniforms *now,
+                     const struct masu_frame_uniforms *before) {
     return memcmp(now->eye_hi, before->eye_hi, 3 * sizeof *now->eye_hi) != 0 ||
            memcmp(now->eye_lo, before->eye_lo, 3 * sizeof *now->eye_lo) != 0;
 }
 
 /* Or looks elsewhere, or sees more or less. */
-static int view_moves(const struct masu_frame_uniforms *now, const struct masu_frame_uniforms *before) {
+static int view_moves(const struct masu_frame_uniforms *now,
+                      const struct masu_frame_uniforms *before) {
     return eye_moves(now, before) || memcmp(now->right, before->right, sizeof now->right) != 0 ||
            memcmp(now->up, before->up, sizeof now->up) != 0 ||
            memcmp(now->forward, before->forward, sizeof now->forward) != 0;
@@ -101,7 +104,8 @@ static uint64_t hash_words(uint64_t hash, const void *data, size_t bytes) {
     return hash;
 }
 
-_Static_assert(sizeof(masu_particle) == 24 + 18 * sizeof(float) && sizeof(masu_decal) == 24 + 28 * sizeof(float),
+_Static_assert(sizeof(masu_particle) == 24 + 18 * sizeof(float) &&
+                   sizeof(masu_decal) == 24 + 28 * sizeof(float),
                "whole words, without padding");
 
 /* A number behind 40 bytes, which padding follows. */
@@ -115,23 +119,26 @@ _Static_assert(offsetof(masu_trail_point, opacity) == 40 &&
                    offsetof(masu_trail, offset) - offsetof(masu_trail, point_count) == 40,
                "one number is left");
 
-/* Of what the frame brings and its history shows: of particles that hang in the air it may be as long as of the rest. */
+/* Hash of a frame's particles, trails and decals, whose images are in the history like
+ * everything else. */
 static uint64_t sprites_of(const masu_frame_desc *d) {
-    uint64_t hash = hash_words(d->particle_count, d->particles, d->particle_count * sizeof *d->particles);
+    uint64_t hash =
+        hash_words(d->particle_count, d->particles, d->particle_count * sizeof *d->particles);
     hash = hash_words(hash ^ d->decal_count, d->decals, d->decal_count * sizeof *d->decals);
     for (uint32_t i = 0; i < d->trail_count; i++) {
         const masu_trail *t = &d->trails[i];
         hash = hash_odd(hash, &t->point_count, t->offset);
-        for (uint32_t k = 0; k < t->point_count; k++) hash = hash_odd(hash, &t->points[k], t->points[k].opacity);
+        for (uint32_t k = 0; k < t->point_count; k++)
+            hash = hash_odd(hash, &t->points[k], t->points[k].opacity);
     }
     return hash;
 }
 
-/* Of an output of twice the size, along axis k: where its pixels lie between texels, and what those count for them, by the
- * tents of shaders/temporal.comp. */
+/* For an output of twice the size, along axis k: positions of output pixels between texels, and
+ * the texels' weights, by the tent filters of shaders/temporal.comp. */
 static void find_between(struct masu_frame_uniforms *u, int k) {
-    /* An odd pixel lies a quarter of a texel after a texel's middle, without jitter. Of two pixels the first is the one that has
-     * the other before the next texel. */
+    /* An odd pixel is a quarter of a texel after a texel's centre, without jitter. The first of
+     * two pixels is the one whose partner is before the next texel. */
     float odd = 0.25f - u->shifts[k], lies = odd - floorf(odd) < 0.5f ? odd : odd + 0.5f;
     float before = floorf(lies), off = lies - before;
     u->between[k] = lies == odd ? 1 : 2;
@@ -159,11 +166,13 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     const float size[2] = {(float)rp->render_width, (float)rp->render_height};
     for (int k = 0; k < 2; k++) {
         f->u.shifts[k] = 0.5f * f->u.jitter[2 + k] * size[k];
-        f->u.shifts[2 + k] = kept ? 0.5f * (history->previous->jitter[2 + k] - f->u.jitter[2 + k]) * size[k] : 0.0f;
+        f->u.shifts[2 + k] =
+            kept ? 0.5f * (history->previous->jitter[2 + k] - f->u.jitter[2 + k]) * size[k] : 0.0f;
         find_between(&f->u, k);
     }
     if (kept) {
-        int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes + in->looks.changes ||
+        int changed = has_changed(&f->u, history->previous, f->plan) ||
+                      t->instances != in->changes + in->looks.changes ||
                       t->lights != lights->changes || t->sprites != sprites ||
                       t->materials != materials->changes || t->post != post->changes ||
                       textures->count || f->desc.textures_changed ||
@@ -171,8 +180,9 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
         t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
         f->u.temporal[1] = t->size[1];
-        f->u.temporal[2] = (t->changed || eye_moves(&f->u, history->previous) ? MASU_TEMPORAL_CHANGES : 0) |
-                           (view_moves(&f->u, history->previous) ? MASU_TEMPORAL_MOVES : 0);
+        f->u.temporal[2] =
+            (t->changed || eye_moves(&f->u, history->previous) ? MASU_TEMPORAL_CHANGES : 0) |
+            (view_moves(&f->u, history->previous) ? MASU_TEMPORAL_MOVES : 0);
     }
     t->size[0] = has_resolve(f) ? rp->render_width : 0;
     t->size[1] = has_resolve(f) ? rp->render_height : 0;

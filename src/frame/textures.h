@@ -5,7 +5,7 @@
 
 #include "frame/frame_data.h"
 
-/* Of the next frame, whose slot has the writes and the texels already. */
+/* Writes for the next frame, whose slot already holds them and the texels. */
 typedef struct masu_textures {
     uint32_t count, words;  /* writes; texels */
     uint32_t width, height; /* of the largest rectangle */

@@ -20,7 +20,7 @@ double masu_timeline_wall(masu_timeline *t, uint32_t slot, uint32_t flight) {
     s->wall_ms = 0.0;
     s->submit_ns = s->done_ns = 0;
     if (!done) return wall;
-    /* With one frame in flight none can overlap; else the end of the one before has to be known. */
+    /* With one frame in flight none can overlap; else the previous frame's end is required. */
     int known = flight == 1 || s->frame == 0 || t->ended + 1 == s->frame;
     if (t->ended + 1 == s->frame && s->frame && t->end_ns > from) from = t->end_ns;
     t->ended = s->frame;

@@ -1,6 +1,7 @@
-/* trails.c: segments of trails to the slot, each as one of the particles (particles.c), with which
- * they are sorted. A segment has its sides at both ends: perpendicular to the trail and to the line
- * of sight. Two segments that meet have the same side there, the mitre of both. */
+/* trails.c: writes segments of trails to the slot, each as one of the particles (particles.c),
+ * with which they are sorted. A segment has a side vector at both ends: perpendicular to the
+ * trail and to the line of sight. Two adjacent segments share the side at their joint, the mitre
+ * of both. */
 #include "frame/sprite_kinds.h"
 
 #include <math.h>
@@ -8,7 +9,8 @@
 
 static const double farthest = 1e15;
 static const float largest = 1e9f, brightest = 4096.0f;
-static const double least_cosine = 0.5; /* of half a bend: a mitre is at most twice as long */
+/* of half the joint's angle: a mitre is at most twice as long */
+static const double least_cosine = 0.5;
 
 static int is_point(const masu_trail_point *p) {
     int fine = isfinite(p->half_width) && isfinite(p->opacity);
@@ -44,7 +46,7 @@ static double direction_of(const masu_trail *t, uint32_t i, double out[3]) {
     return length;
 }
 
-/* Unit vector to the left of the trail at a point relative to the eye. */
+/* Unit vector to the left of the trail at a point relative to the camera. */
 static void left_of(const double direction[3], const double rel[3], const masu_sprite_eye *eye,
                     double out[3]) {
     cross(direction, rel, out);
@@ -66,7 +68,7 @@ static void side_of(const masu_trail_point *p, const masu_sprite_eye *eye, const
     if (length > 1e-3)
         cosine = fmax(0.5 * length, least_cosine);
     else
-        memcpy(sum, b, sizeof sum), length = 1.0; /* turns back */
+        memcpy(sum, b, sizeof sum), length = 1.0; /* reverses direction */
     double width = (double)masu_clamped(p->half_width, 0.0f, largest) / (length * cosine);
     for (uint32_t k = 0; k < 3; k++) out[k] = (float)(sum[k] * width);
 }

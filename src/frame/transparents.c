@@ -1,18 +1,18 @@
-/* transparents.c: blended things in the order of their distance, without recording anything anew.
+/* transparents.c: draws transparent things in the order of their distance with static recordings.
  *
- * The recordings have as many slots as the scene has things. Slot k draws the k-th farthest: for each of
- * the texture sets that things use one indirect command, and all of a slot's commands but that of its
- * thing have instanceCount 0. Which instance and material a slot has, its vertex shader reads from the
- * buffer of drawn instances. Both are written here for each frame:
+ * The recordings have one slot for each thing of the scene. Slot k draws the k-th farthest. It
+ * has one indirect command for each texture set that things use; all commands of a slot except its
+ * thing's have instanceCount 0. The vertex shader reads the slot's instance and material from the
+ * buffer of drawn instances. Both buffers are written here for each frame:
  *
- *   draw commands      behind those of visible.c: [slot][texture set]
- *   drawn instances    behind its lists: [slot] instance, material, flags, layers, detail, and
+ *   draw commands      after those of visible.c: [slot][texture set]
+ *   drawn instances    after its lists: [slot] instance, material, flags, layers, detail, and
  *                      with depth biases the factor on its depth
  *
- * What the camera does not see is left out, and the last slots are empty. The order is that of the
- * boxes' centres: of things that reach through each other, or of a large pane and what is close to it,
- * no order of whole things is right. Wrong turn: to sort by the nearest point of the box; a wide pane
- * behind a small one would often come last. */
+ * Things outside the camera's view are culled, and the last slots are empty. The order is by the
+ * boxes' centres: for intersecting things, or a large pane and a thing close to it, no order of
+ * whole things is correct. Rejected alternative: to sort by the nearest point of the box; a wide
+ * pane behind a small one would often be drawn last. */
 #include "frame/transparents.h"
 
 #include <math.h>
@@ -72,7 +72,7 @@ static void copy_primitive(masu_transparent *t, const masu_draws *draws, uint32_
     if (mirrored) t->flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
     int flat = 0;
     for (uint32_t k = 0; k < 3; k++) flat |= !(p->aabb_min[k] < p->aabb_max[k]);
-    if (!flat) { /* transparents.frag says why */
+    if (!flat) { /* transparents.frag explains it */
         t->flags |= MASU_MAP_FAR_SIDE_FIRST;
         t->draw.instanceCount = 2;
     }
@@ -119,7 +119,8 @@ void masu_transparents_clear(masu_transparents *s, const masu_frame_plan *plan, 
     for (uint32_t i = 0; i < each; i++) first[i].instance = MASU_BLOB_NONE;
 }
 
-/* Square of the distance from the eye to the middle of a thing's box: finite, since all of it is. */
+/* Squared distance from the camera to the centre of a thing's box: finite, since both are
+ * finite. */
 static float distance_of(const masu_transparent *t, const masu_instances *in, const double eye[3]) {
     const struct masu_instance_data *at = &in->now[t->instance];
     const float *rows[3] = {at->row0, at->row1, at->row2};
@@ -159,7 +160,8 @@ void masu_transparents_write(masu_transparents *s, const masu_instances *in,
             draw.instanceCount = k < seen && c == t->column ? t->draw.instanceCount : 0;
             *draws++ = draw;
         }
-        uint32_t thing[MASU_TRANSPARENT_WORDS_MAX] = {t->instance, t->material, t->flags, t->layers};
+        uint32_t thing[MASU_TRANSPARENT_WORDS_MAX] = {t->instance, t->material, t->flags,
+                                                      t->layers};
         memcpy(thing + 4, t->detail, sizeof t->detail);
         if (s->nearer) memcpy(thing + 6, &s->nearer[number], sizeof *s->nearer);
         memcpy(words, thing, masu_transparent_words(f->plan) * sizeof *words);

@@ -1,5 +1,6 @@
-/* transparents.h: what is seen through: one thing for each primitive of a blended material and each
- * instance of its mesh, drawn one by one, the farthest first. transparents.c says how. */
+/* transparents.h: transparent surfaces: one thing for each primitive of a transparent material
+ * and each instance of its mesh, drawn separately, the farthest first. transparents.c explains
+ * the method. */
 #ifndef MASU_TRANSPARENTS_H
 #define MASU_TRANSPARENTS_H
 
@@ -7,7 +8,7 @@
 
 typedef struct masu_transparent {
     VkDrawIndexedIndirectCommand draw;
-    uint32_t instance; /* MASU_BLOB_NONE: there is none, in a place of the reserve */
+    uint32_t instance; /* MASU_BLOB_NONE: a free slot of the reserve */
     uint32_t material, flags, layers;
     float detail[2];
     uint32_t column; /* which of the texture sets */
@@ -15,31 +16,32 @@ typedef struct masu_transparent {
 } masu_transparent;
 
 typedef struct masu_back_to_front {
-    float key; /* the larger comes first; no NaN */
+    float key; /* sorted by falling key; no NaN */
     uint32_t thing;
 } masu_back_to_front;
 
-/* Sorts by falling key; equal keys stay as they are. `scratch` has room for n too. Which of the two
- * arrays holds the result is returned. n log2 n steps, whatever the keys. */
+/* Stable sort by falling key. `scratch` has space for n entries too. Returns the array of the
+ * two that holds the result. n log2 n steps for any keys. */
 masu_back_to_front *masu_sort_back_to_front(masu_back_to_front *entries,
                                             masu_back_to_front *scratch, uint32_t n);
 
 typedef struct masu_transparents {
-    masu_transparent *things;             /* plan->scene.transparents of them */
+    masu_transparent *things;             /* [plan->scene.transparents] */
     float *nearer; /* [thing]: factor on its depth; NULL if no material has a depth bias */
     masu_back_to_front *order;            /* twice as many */
-    const masu_back_to_front *sorted;     /* in one half of it: those drawn by the frame at hand */
+    const masu_back_to_front *sorted; /* in one half of `order`: those drawn by the current frame */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* drawn */
 } masu_transparents;
 
 void masu_transparents_alloc(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_transparents_copy_scene(masu_transparents *s, const masu_frame_plan *plan,
                                   const masu_draws *draws, const masu_scene_view *v);
-/* Into a place of the reserve: what one instance shows, as of another. */
+/* Copies the things of one instance to another, in a slot of the reserve. */
 void masu_transparents_copy(masu_transparents *s, const masu_frame_plan *plan, uint32_t place,
                             uint32_t from, uint32_t to);
 void masu_transparents_clear(masu_transparents *s, const masu_frame_plan *plan, uint32_t place);
-/* Sorted to the slot; after masu_visible_write, which says what the camera sees. */
+/* Writes the sorted things to the slot; after masu_visible_write, which finds those visible to
+ * the camera. */
 void masu_transparents_write(masu_transparents *s, const masu_instances *in,
                              const masu_visible *visible, const masu_frame_data *f);
 

@@ -1,21 +1,22 @@
-/* visible.c: what each view draws. The recordings are static: each has every draw, indirect, and
- * how many instances a draw has, and which, is read from two buffers that are written here for each
- * frame:
+/* visible.c: the instances that each view draws. The recordings are static: each contains all draws
+ * as indirect draws. The number of instances of each draw, and their indices, are read from two
+ * buffers that are written here for each frame:
  *
  *   draw commands      [view][draw]    VkDrawIndexedIndirectCommand; instanceCount 0: nothing
- *   drawn instances    [view][list]    of each form of a placed mesh those that are kept
+ *   drawn instances    [view][list]    the visible instances of each LOD of a placed mesh
  *
- * Each form of a mesh, the mesh itself and its LODs, has draws and a list of its own, with room for all
- * instances: where a list begins is recorded. A kept instance is in one of them. Which, depends on the
- * camera and on where the instance is, and on nothing else: the same in each view and whatever is
- * culled.
+ * Each LOD of a mesh, including the mesh itself, has separate draws and a list with space for all
+ * instances: the start of each list is recorded. A visible instance is in one list. The LOD depends
+ * only on the camera and the instance's transform: it is the same in each view, with any culling. So
+ * all views are culled first, and one pass over the instances then fills their lists.
  *
- * firstInstance stays 0, since another one would need the feature drawIndirectFirstInstance: a draw
- * finds the start of its list in its push constants. All primitives of a mesh share one list.
- * With stage 2 (occlusion.c) both have a second half, in which the GPU writes what it has left.
+ * firstInstance is always 0, since other values would need the feature drawIndirectFirstInstance: a
+ * draw reads the start of its list from push constants. All primitives of a mesh share one list.
+ * With stage 2 (occlusion.c) both buffers have a second half, in which the GPU writes the instances
+ * that remain.
  *
- * Kept instances stay in order, so that what is not seen changes nothing: of two surfaces at one
- * depth the same one wins with and without it. */
+ * Visible instances keep their order, so that culling does not change the image: of two surfaces at
+ * one depth the same one wins with and without culling. */
 #include "frame/visible.h"
 
 #include "device/bind.h"
@@ -82,29 +83,31 @@ void masu_visible_write_scene(const masu_device *device, const masu_draws *draws
 
 /* ---- Each frame ------------------------------------------------------------------------------ */
 
-/* By the least depth that a point of the box can have in the picture: not below that of its nearest
- * corner, nor below its distance times the cosine of the widest angle. The latter also serves what is
- * beside or behind the camera and casts a shadow. What the camera is in is drawn as it is. */
+_Static_assert(sizeof(struct masu_instance_data) == 12 * sizeof(float), "three rows of four");
+
+/* Lower bound of the depth of an instance's box in the image: the depth of its nearest corner, or the
+ * distance of the box times the cosine of the widest angle, whichever is larger. The latter also
+ * handles casters next to or behind the camera. A box that contains the camera has the finest LOD. */
 static uint32_t level_of(const masu_visible *s, const masu_lod_view *view,
                          const masu_bounds *bounds, const masu_instances *in,
                          const masu_batch *mesh, uint32_t instance) {
+    const float *center = bounds->boxes + masu_bounds_position(bounds, instance);
+    const float *extent = center + 3 * bounds->box_stride;
     double depth = 0.0, squared = 0.0;
-    float rows[12], box[6];
-    masu_bounds_of(bounds, instance, box);
-    for (uint32_t k = 0; k < 3; k++) {
-        double rel = (double)box[k] - view->eye[k];
-        double half = (double)box[3 + k];
-        double outside = fmax(fabs(rel) - half, 0.0);
+    const float *rows = (const float *)(const void *)&in->now[instance];
+    for (uint32_t k = 0; k < 3; k++, center += bounds->box_stride, extent += bounds->box_stride) {
+        double rel = (double)*center - view->eye[k], half = (double)*extent;
+        double outside = fabs(rel) - half;
         depth += view->forward[k] * rel - fabs(view->forward[k]) * half;
-        squared += outside * outside;
+        if (outside > 0.0) squared += outside * outside;
     }
-    depth = fmax(depth, sqrt(squared) * view->widest);
-    masu_instance_rows(&in->now[instance], rows);
+    double least = sqrt(squared) * view->widest; /* never NaN; depth is, of an infinite box */
+    depth = depth > least ? depth : least;
     return masu_lod_choose(s->lods + mesh->first_lod, mesh->lod_count, masu_lod_scale(rows),
                            (float)depth, view->pixels, view->threshold);
 }
 
-/* Stage 1: the bit of a view in the marks of what it keeps. */
+/* Stage 1: sets the bit of a view in the marks of its visible instances. */
 static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
                  const masu_views *views, const masu_frame_data *f, uint32_t view) {
     const masu_scene_data *scene = &f->plan->scene;
@@ -132,65 +135,76 @@ static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instance
     }
 }
 
+#define FORMS (1 + MASU_BLOB_LODS_MAX)
+
+/* The lists of one mesh in all views. */
 typedef struct lister {
     masu_visible *s;
     const masu_bounds *bounds;
     const masu_instances *in;
     const masu_views *views;
     const masu_frame_data *f;
-    const masu_batch *mesh; /* and its LODs behind it */
-    uint32_t view;
-    uint32_t *ids, *kept; /* [form]: so many */
+    const masu_batch *mesh; /* followed by its LODs */
+    uint32_t *ids;   /* [view][listed] */
+    uint64_t listed; /* ids per view */
+    uint32_t kept[MASU_MAX_VIEWS][FORMS]; /* lengths of the lists */
 } lister;
 
-static void list_one(const lister *l, uint32_t i) {
-    if (!(l->s->marks[i] >> l->view & 1u)) return;
-    uint32_t level = 0;
-    if (l->f->plan->lods) {
+/* Appends an instance to the list of each view that it is marked for. Its LOD does not depend on
+ * the view: it is chosen once. */
+static void list_one(lister *l, uint32_t i) {
+    uint32_t marks = l->s->marks[i] & ((1u << l->f->plan->views) - 1u), level = 0;
+    if (!marks) return;
+    if (l->mesh->lod_count) {
         level = level_of(l->s, &l->views->lod, l->bounds, l->in, l->mesh, i);
-        l->s->levels[i] = (uint8_t)level;
+        l->s->levels_chosen++;
     }
-    l->ids[l->mesh[level].first_listed + l->kept[level]++] = i;
+    if (l->f->plan->lods) l->s->levels[i] = (uint8_t)level;
+    uint32_t *to = l->ids + l->mesh[level].first_listed, *kept = &l->kept[0][level];
+    for (uint64_t listed = l->listed; marks; marks >>= 1, to += listed, kept += FORMS) {
+        if (marks & 1u) to[(*kept)++] = i;
+    }
 }
 
-/* What is marked, into the lists and counts of the forms of its mesh. */
+/* The counts of the forms of a mesh in a view: its draw commands, which are never read (upload
+ * memory may be write-combined), and the statistics. */
+static void write_counts(const lister *l, uint32_t view, VkDrawIndexedIndirectCommand *draws) {
+    masu_view_stats *counts = &l->s->slot_views[l->f->slot][view];
+    for (uint32_t level = 0; level < 1 + l->mesh->lod_count; level++) {
+        const masu_batch *batch = &l->mesh[level];
+        uint32_t kept = l->kept[view][level];
+        for (uint32_t d = 0; d < batch->draw_count; d++) {
+            draws[batch->first_draw + d].instanceCount = kept;
+        }
+        counts->instances += kept;
+        counts->triangles += kept * batch->triangles;
+        counts->draws += kept ? batch->draw_count - batch->blended : 0;
+    }
+}
+
+/* All marked instances, in one pass over the instances of each mesh. */
 static void list(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
-                 const masu_views *views, const masu_frame_data *f, uint32_t view) {
-    masu_view_stats *counts = &s->slot_views[f->slot][view];
-    /* Never read: upload memory may be write-combined. */
+                 const masu_views *views, const masu_frame_data *f) {
     VkDrawIndexedIndirectCommand *draws =
-        (VkDrawIndexedIndirectCommand *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWS) +
-        (uint64_t)view * f->plan->draws;
-    uint32_t *ids = (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) +
-                    (uint64_t)view * f->plan->listed;
-    for (uint32_t b = 0, forms; b < f->draws->batch_count; b += forms) {
+        (VkDrawIndexedIndirectCommand *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWS);
+    uint32_t *ids = (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN);
+    s->levels_chosen = 0;
+    for (uint32_t b = 0; b < f->draws->batch_count; b += 1 + f->draws->batches[b].lod_count) {
         const masu_batch *mesh = &f->draws->batches[b];
-        uint32_t kept[1 + MASU_BLOB_LODS_MAX] = {0};
-        uint32_t end = mesh->first_instance + mesh->instance_count;
-        forms = 1 + mesh->lod_count;
-        const lister l = {s, bounds, in, views, f, mesh, view, ids, kept};
-        for (uint32_t i = mesh->first_instance; i < end; i++) list_one(&l, i);
+        lister l = {s, bounds, in, views, f, mesh, ids, f->plan->listed, {{0}}};
+        for (uint32_t i = 0; i < mesh->instance_count; i++) list_one(&l, mesh->first_instance + i);
         for (uint32_t i = masu_instances_added(in, mesh->mesh); i != MASU_BLOB_NONE;
              i = masu_instances_next(in, i))
             list_one(&l, i);
-        for (uint32_t level = 0; level < forms; level++) {
-            const masu_batch *batch = &mesh[level];
-            for (uint32_t d = 0; d < batch->draw_count; d++) {
-                draws[batch->first_draw + d].instanceCount = kept[level];
-            }
-            counts->instances += kept[level];
-            counts->triangles += kept[level] * batch->triangles;
-            counts->draws += kept[level] ? batch->draw_count - batch->blended : 0;
-        }
+        for (uint32_t view = 0; view < f->plan->views; view++)
+            write_counts(&l, view, draws + (uint64_t)view * f->plan->draws);
     }
 }
 
 void masu_visible_write(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
                         const masu_views *views, const masu_frame_data *f) {
-    for (uint32_t view = 0; view < f->plan->views; view++) {
-        memset(&s->slot_views[f->slot][view], 0, sizeof s->slot_views[f->slot][view]);
-        if (!f->plan->scene.instances) continue;
-        mark(s, bounds, in, views, f, view);
-        list(s, bounds, in, views, f, view);
-    }
+    memset(s->slot_views[f->slot], 0, f->plan->views * sizeof *s->slot_views[f->slot]);
+    if (!f->plan->scene.instances) return;
+    for (uint32_t view = 0; view < f->plan->views; view++) mark(s, bounds, in, views, f, view);
+    list(s, bounds, in, views, f);
 }

@@ -27,7 +27,7 @@ static void resolve_upscaling(const masu_desc *d, uint32_t r, const masu_rung_pl
                         : 2 * rp->render_width == d->output.width &&
                               2 * rp->render_height == d->output.height;
     needs->twice = half && needs->upscale && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
-                   d->half_floats != MASU_ON;
+                   !d->deny.easu_twice && d->half_floats != MASU_ON;
     /* If a resizable output becomes odd, the last pixels of a 2x rung would be offset by one from
      * those of other rungs, whose history it continues. */
     int doubles =
@@ -360,6 +360,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .sdf = d->scene && plan->scene.sdf,
         .dynamic = d->scene && plan->scene.sdf_dynamic,
         .timed = d->scene && plan->scene.sdf_timed,
+        .moving = d->scene && plan->scene.sdf && !plan->scene.sdf_static,
         .anchored = d->scene && plan->scene.sdf_anchored,
         .sdf_occlusion = d->scene && plan->scene.sdf_occlusion,
         .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),

@@ -33,6 +33,8 @@ int masu_has_image(const masu_needs *n, uint32_t image) {
 
 #define NO_SCENE "no scene: a source image is upscaled"
 #define NO_SDF "the scene has no SDF"
+#define STATIC_SDF "the SDF is static: only the camera moves it"
+#define MOVING_SDF "the SDF may change"
 #define NO_SPLIT "desc.split does not request it"
 #define NOTHING_KEPT "no history without rung.specular_temporal"
 

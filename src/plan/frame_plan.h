@@ -180,7 +180,8 @@ typedef struct masu_needs {
     int blit;          /* targets are filled by a blit */
     int dynamic;       /* the SDF's evaluated constants depend on parameters or time */
     int anchored;      /* and on the camera position: the SDF has a floating origin */
-    int timed;         /* `dynamic`, and some of them depend on time */
+    int timed;         /* the SDF or its surfaces depend on time */
+    int moving;        /* the SDF may change: by time, or by parameters of the host */
     int occluders;     /* the scene has occluders */
     int unculled;      /* and a mesh with too many primitives or instances for occlusion culling */
     int surface;     /* some material has more parameters than the albedo and normal images hold */

@@ -8,51 +8,33 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Constants: times in frames, standard deviations, or ratios ------------------------------ */
+/* ---- Constants: times in frames, or ratios ------------------------------------------- */
 
-#define COST_KNOWN 0.0015 /* relative deviation of a cost that was measured before */
-#define MARGIN MASU_GOVERNOR_MARGIN
-#define MARGIN_REST 1.25 /* margins for keeping it: steady load, */
-#define MARGIN_MOVES 3.5 /* and rising load, when the prediction lags */
-#define RISES_LEAST 0.05 /* relative rise of the load within a dwell: none below this, */
-#define RISES_MOST 0.15  /* certain from this on */
-#define FALL_AHEAD 0.75  /* dwells to extrapolate the slope when selecting a cheaper rung */
+/* Deviations: margin for keeping a rung. Half of that for selecting one: noise between the two
+ * changes nothing. */
+#define MARGIN_KEEP (0.5 * MASU_GOVERNOR_MARGIN)
+/* Frames without a sample: half a second at 60 Hz. The longest delay of samples is a few frames. */
 #define STALE_FRAMES 30u
-#define STEP_UP 1.5        /* a rise by less than this cost factor waits for a larger one, */
-#define STEP_WAIT 5u       /* for this many half dwells */
-#define SETTLE_WAIT 8u     /* half dwells until a rung is settled */
-#define SETTLE_BAND 0.05   /* relative change of load that leaves it settled */
-#define MISTAKE_LOAD 1.1   /* factor within which the load equals that of the last rise, */
-#define MISTAKE_RANGE 1.25 /* and that it must not have left since */
-#define FORGET_LOAD 1.3    /* load change by this factor clears failed rises */
-/* Failed rises: factor on the predicted time of the rung. */
-#define PENALTY_LEAST 1.02
-#define PENALTY_MOST 1.15
-#define PATIENCE_MOST 64u
-/* A clock that follows its load makes a cheap rung as slow as a better one. Trials find out: */
-#define TRIAL_BUSY 0.92  /* of the target: trials only below this time, at a steady load, */
-#define TRIAL_MOST 1.25  /* and only of rungs predicted to take less than this factor times it */
-#define TRIAL_WAIT 1800u /* frames of steady load before the first trial, */
-#define TRIAL_AGAIN 300u /* or after a failed trial if earlier ones succeeded: both double */
-/* Factor on the predicted time: a shorter time shows that the clock has followed. */
+/* Cost ratio: a rise by less than this waits for a larger one, because each change is visible, */
+#define STEP_UP 1.5
+#define STEP_WAIT 2.5 /* for this many dwells: two would follow waves of the load of a second. */
+/* Dwells at a steady load until a rung is settled. Above STEP_WAIT, or no small rise would
+ * happen. */
+#define SETTLE_WAIT 4u
+/* Ratio: a load or time that differs by more than this factor is another one. About the step
+ * between two rungs of a built-in ladder. */
+#define OTHER 1.25
+/* A clock that follows its load makes a cheap rung as slow as a better one. Trials detect
+ * it. Fraction of the target: trials only below this time, as such clocks keep 90 % busy. */
+#define TRIAL_BUSY 0.92
+/* Frames of steady load before the first trial: 30 s at 60 Hz, as a trial costs missed frames. */
+#define TRIAL_WAIT 1800u
+/* Factor on the predicted time: a shorter time shows that the clock has followed. Outside the 2 to
+ * 3 % by which a correct prediction errs. */
 #define TRIAL_FOLLOWS 0.96
-#define TRIALS_MOST 6u    /* maximum number of trials */
-#define TRIALS_DOUBT 3u   /* consecutive failures that reset the knowledge about the clock */
-#define HOLD 8u           /* frames: minimum time on a rung without a missed target */
-#define NO_GAIN 1.05      /* rungs within this factor of the lowest cost are equal */
-#define SPIKE_RANGE 1.1   /* factor within which a load is one of the remembered spikes */
-#define UNDONE_FRAMES 12u /* a jump of the load this soon after a rise undoes the rise */
-/* The survey. */
-#define SURVEY_MOST 1.25 /* times the cheapest's time: rungs predicted below it are measured, */
-#define SURVEY_FIXED 0.5 /* all, if so much of the cheapest's time is fixed */
-#define SURVEY_REST 16u  /* frames of steady load before a survey */
-#define SURVEY_SLOPE 0.05 /* relative change of load per dwell that is steady */
-/* Factors of the time within which the result of a survey remains valid: above the target, and
- * below. */
-#define SURVEY_RANGE 1.15
-#define SURVEY_RANGE_FITS 1.08
-
-_Static_assert(MASU_SURVEY_RUNGS == MASU_GOVERNOR_RUNGS, "a survey of every rung");
+/* Fraction of the cheapest rung's time: if more is fixed, costs no longer predict the other rungs,
+ * and a survey measures all of them. */
+#define SURVEY_FIXED 0.5
 
 /* ---- Init ------------------------------------------------------------------------------------ */
 
@@ -96,35 +78,35 @@ void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
 
 /* ---- Rules ----------------------------------------------------------------------------------- */
 
-/* The best rung below the present one that meets the target for a dwell, at the present slope; the
+/* The best rung below the present one that keeps the target for a dwell, at the present slope; the
  * worst rung if none does. */
 static uint32_t fall(const masu_governor *g, double lead, int *fits) {
-    double last = lead + (g->follows ? 0.0 : FALL_AHEAD * (double)g->dwell);
+    double last = lead + (g->follows ? 0.0 : (double)g->dwell);
     *fits = 1;
     for (uint32_t r = g->best; r <= g->worst; r++) {
         if (g->cost[r] < g->cost[g->rung] &&
-            masu_governor_upper(g, r, last, 0, MARGIN) <= g->target)
+            masu_governor_upper(g, r, last, 0, MASU_GOVERNOR_MARGIN) <= g->target)
             return r;
     }
     *fits = 0;
     return g->worst;
 }
 
-/* Whether a rung meets the target at this load. */
+/* Whether a rung keeps the target at this load. */
 static int fits_load(const masu_governor *g, uint32_t rung, double load) {
-    return (g->fixed + g->cost[rung] * load) * (1.0 + MARGIN * g->noise) <= g->target;
+    return (g->fixed + g->cost[rung] * load) * (1.0 + MASU_GOVERNOR_MARGIN * g->noise) <= g->target;
 }
 
-/* The best rung that meets the target with headroom, now and for a dwell; else the present one. */
+/* The best rung that keeps the target with headroom, now and for a dwell; else the present one. */
 static uint32_t rise(masu_governor *g, uint64_t frame, double lead) {
     uint32_t barrier =
         masu_survey_barrier(&g->survey, frame, masu_governor_predict(g, g->survey.below), g->noise);
     double most = g->target * (1.0 - g->headroom), peak = masu_spikes_peak(&g->spikes);
-    if (peak > 0.0 && !fits_load(g, g->worst, peak)) peak = 0.0; /* no rung meets the target then */
+    if (peak > 0.0 && !fits_load(g, g->worst, peak)) peak = 0.0; /* no rung keeps the target then */
     for (uint32_t r = barrier > g->best ? barrier : g->best; r < g->rung; r++) {
         if (peak > 0.0 && !fits_load(g, r, peak)) continue;
-        double now = masu_governor_upper(g, r, lead, 1, MARGIN),
-               then = masu_governor_upper(g, r, lead + g->dwell, 0, MARGIN);
+        double now = masu_governor_upper(g, r, lead, 1, MASU_GOVERNOR_MARGIN),
+               then = masu_governor_upper(g, r, lead + g->dwell, 0, MASU_GOVERNOR_MARGIN);
         if (masu_largest(now, then) * g->penalty[r] <= most) return r;
     }
     return g->rung;
@@ -132,7 +114,6 @@ static uint32_t rise(masu_governor *g, uint64_t frame, double lead) {
 
 static void change(masu_governor *g, uint64_t frame, uint32_t rung, masu_governor_reason reason) {
     if (rung == g->rung) return;
-    g->cost_variance[rung] = masu_largest(g->cost_variance[rung], COST_KNOWN * COST_KNOWN);
     g->rung = rung;
     g->changed = frame;
     g->reason = reason;
@@ -154,21 +135,20 @@ static void raise_to(masu_governor *g, uint64_t frame, uint32_t rung, masu_gover
     g->rising = 1;
 }
 
-static int is_near(double a, double b, double factor) { return a < factor * b && b < factor * a; }
+static int is_near(double a, double b) { return a < OTHER * b && b < OTHER * a; }
 
 /* Whether a rise now would repeat one that was undone, with only noise in between. If so, the time
  * measured at that rung is a penalty for the rung and all better ones, and the wait before the next
  * rise doubles. */
 static int repeats_a_mistake(masu_governor *g) {
-    if (!g->failed || !is_near(g->load, g->raised_load, MISTAKE_LOAD) ||
-        !is_near(g->load_low, g->raised_load, MISTAKE_RANGE) ||
-        !is_near(g->load_high, g->raised_load, MISTAKE_RANGE))
+    if (!g->failed || !is_near(g->load_low, g->raised_load) ||
+        !is_near(g->load_high, g->raised_load))
         return 0;
-    double penalty = masu_within(g->failed_ms / g->raised_ms, PENALTY_LEAST, PENALTY_MOST);
+    double penalty = masu_within(g->failed_ms / g->raised_ms, 1.0, MASU_SURVEY_RANGE);
     for (uint32_t r = g->best; r <= g->raised_rung; r++)
         g->penalty[r] = masu_largest(g->penalty[r], penalty);
     g->mistake_load = g->load;
-    if (g->patience < PATIENCE_MOST) g->patience *= 2;
+    if (g->patience < 1u << MASU_GOVERNOR_DOUBLINGS) g->patience *= 2;
     g->failed = 0;
     return 1;
 }
@@ -177,16 +157,6 @@ void masu_governor_forget_mistakes(masu_governor *g) {
     for (uint32_t r = 0; r < g->count; r++) g->penalty[r] = 1.0;
     g->patience = 1;
     g->failed = 0;
-}
-
-/* 0: the load does not rise; 1: it certainly does. A clock that follows the load is not
- * treated as a rise, because it stops before the target is missed. */
-static double rises(const masu_governor *g) {
-    if (g->follows) return 0.0;
-    double part = g->slope * (double)g->dwell / g->load;
-    if (g->settled_load >= 0.0 && g->load < (1.0 + SETTLE_BAND) * g->settled_load) return 0.0;
-    return masu_governor_moves(g) *
-           masu_within((part - RISES_LEAST) / (RISES_MOST - RISES_LEAST), 0.0, 1.0);
 }
 
 /* ---- The survey ------------------------------------------------------------------------------ */
@@ -198,7 +168,7 @@ static uint32_t next_to_measure(masu_governor *g) {
     if (g->fixed > SURVEY_FIXED * least) s->any = 1;
     uint32_t from = s->high > g->best ? s->high : g->best;
     for (uint32_t r = from; r < s->low; r++) {
-        if (masu_governor_predict(g, r) <= (s->any ? SURVEY_MOST : MASU_SURVEY_GAIN) * least ||
+        if (masu_governor_predict(g, r) <= (s->any ? OTHER : MASU_SURVEY_GAIN) * least ||
             masu_survey_may_be_same(s, r, s->cheapest, g->noise))
             return r;
     }
@@ -244,8 +214,8 @@ static void end_trial(masu_governor *g, uint64_t frame, int over) {
         g->trials = 0;
         return;
     }
-    if (g->trials < TRIALS_MOST) g->trials++;
-    if (g->trials >= TRIALS_DOUBT) g->follows = 0;
+    if (g->trials < MASU_GOVERNOR_DOUBLINGS) g->trials++;
+    g->follows = 0;
     if (!over) return;
     change(g, frame, g->trial_from, MASU_GOVERNOR_REASON_DOWN);
     g->rising = 0;
@@ -255,19 +225,17 @@ static void end_trial(masu_governor *g, uint64_t frame, int over) {
 static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
     uint32_t r = g->rung - 1;
     if (g->rung <= g->best || g->steady_clock || g->odd_count || masu_governor_moves(g) > 0.0 ||
-        g->noise > 0.05)
+        g->noise > MASU_SURVEY_GAIN - 1.0)
         return;
     if (!g->follows && g->settled_load < 0.0) return;
-    while (r > g->best && g->cost[r] < NO_GAIN * g->cost[g->rung]) r--;
+    while (r > g->best && g->cost[r] < MASU_SURVEY_GAIN * g->cost[g->rung]) r--;
     if (masu_governor_predict(g, g->rung) > TRIAL_BUSY * g->target ||
-        masu_governor_predict(g, r) > TRIAL_MOST * g->target)
+        masu_governor_predict(g, r) > OTHER * g->target)
         return;
     /* At another load the clock may have headroom again. */
-    if (g->follows && !is_near(g->load, g->trial_load, FORGET_LOAD)) g->trials = 0;
-    uint64_t wait = !g->follows ? TRIAL_WAIT : g->trials ? TRIAL_AGAIN : g->dwell;
-    if (still < (g->follows ? g->dwell : TRIAL_WAIT) ||
-        (g->trials && frame - g->trial_ended < wait << g->trials))
-        return;
+    if (g->follows && !is_near(g->load, g->trial_load)) g->trials = 0;
+    uint64_t wait = g->follows ? g->dwell : TRIAL_WAIT;
+    if (still < wait || (g->trials && frame - g->trial_ended < wait << g->trials)) return;
     g->trial_from = g->rung;
     g->trial_ms = masu_governor_predict(g, r);
     g->rising = 0;
@@ -288,8 +256,8 @@ static void leave(masu_governor *g, uint64_t frame, double lead, masu_governor_r
     }
     if (r == g->rung || (r < g->rung && !may_rise)) {
         g->reason = MASU_GOVERNOR_REASON_WORST;
-        if (!fits && !holds && enough && frame - g->restless >= SURVEY_REST) {
-            masu_survey_begin(&g->survey, frame, g->worst, SURVEY_RANGE);
+        if (!fits && !holds && enough && frame - g->restless >= MASU_SPIKE_FRAMES) {
+            masu_survey_begin(&g->survey, frame, g->worst);
             survey(g, frame);
         }
         return;
@@ -304,12 +272,12 @@ static void leave(masu_governor *g, uint64_t frame, double lead, masu_governor_r
     }
     /* A jump right after a rise: the cost of the rung is wrong, not the load. */
     uint32_t below = g->survey.below;
-    if (g->rising && frame - g->changed <= UNDONE_FRAMES && why == MASU_GOVERNOR_REASON_JUMP &&
-        below > g->rung && below <= g->worst)
+    if (g->rising && frame - g->changed <= MASU_GOVERNOR_TRIAL &&
+        why == MASU_GOVERNOR_REASON_JUMP && below > g->rung && below <= g->worst)
         r = below;
     masu_survey_undo(&g->survey, r);
-    int rested = (!g->changes || frame - g->restless > SURVEY_REST) &&
-                 fabs(g->slope) * g->dwell < SURVEY_SLOPE * g->load;
+    int rested = (!g->changes || frame - g->restless > MASU_SPIKE_FRAMES) &&
+                 fabs(g->slope) * g->dwell < (MASU_SURVEY_GAIN - 1.0) * g->load;
     if (!g->survey.left && rested) g->survey.left = g->rung + 1;
     g->failed = g->rising && g->rung == g->raised_rung;
     g->failed_ms = masu_governor_predict(g, g->rung);
@@ -322,29 +290,30 @@ static void leave(masu_governor *g, uint64_t frame, double lead, masu_governor_r
  * better one again. */
 static int fell_in_vain(masu_governor *g, uint64_t frame, uint64_t still) {
     masu_survey *s = &g->survey;
-    if (!s->left || still < SURVEY_REST || s->count[g->rung] < masu_survey_enough(g->noise))
+    if (!s->left || still < MASU_SPIKE_FRAMES || s->count[g->rung] < masu_survey_enough(g->noise))
         return 0;
     uint32_t left = s->left - 1;
     s->left = 0;
     if (left >= g->rung || left < g->best || !masu_survey_may_be_same(s, left, g->rung, g->noise))
         return 0;
-    masu_survey_begin(s, frame, g->rung, SURVEY_RANGE_FITS);
+    masu_survey_begin(s, frame, g->rung);
     s->count[left] = 0;
     change(g, frame, left, MASU_GOVERNOR_REASON_NO_GAIN);
     return 1;
 }
 
 static void choose(masu_governor *g, uint64_t frame) {
-    double lead = masu_governor_lead(g, frame);
-    double keep = MARGIN_REST + (MARGIN_MOVES - MARGIN_REST) * rises(g);
+    double lead = masu_governor_lead(g, frame), keep = MARGIN_KEEP;
+    if (g->slope > 0.0 && !g->follows) keep *= 1.0 + masu_governor_moves(g);
     if (g->jumped || masu_governor_moves(g) > 0.5) g->restless = frame;
     if (g->load < g->load_low) g->load_low = g->load;
     if (g->load > g->load_high) g->load_high = g->load;
-    if (g->jumped || !is_near(g->load, g->mistake_load, FORGET_LOAD)) {
+    if (g->jumped || !is_near(g->load, g->mistake_load)) {
         if (g->patience > 1) masu_governor_forget_mistakes(g);
     }
     uint64_t held = frame - g->changed + g->held_before;
-    uint64_t dwell = (uint64_t)(g->dwell > HOLD ? g->dwell : HOLD) * g->patience;
+    uint64_t dwell = g->dwell > MASU_GOVERNOR_HOLD ? g->dwell : MASU_GOVERNOR_HOLD;
+    dwell *= g->patience;
     int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target, urgent = g->misses >= 2;
     masu_governor_reason why = g->jumped ? MASU_GOVERNOR_REASON_JUMP
                                : over    ? MASU_GOVERNOR_REASON_DOWN
@@ -358,13 +327,13 @@ static void choose(masu_governor *g, uint64_t frame) {
         g->restless = frame;
         g->survey.barrier = g->survey.failures = 0;
     }
-    if (peak > 0.0 && g->load < SPIKE_RANGE * peak && fits_load(g, g->rung, peak))
+    if (peak > 0.0 && g->load < OTHER * peak && fits_load(g, g->rung, peak))
         over = urgent = 0;
     masu_survey_holds(&g->survey, frame, g->rung, masu_governor_predict(g, g->rung));
     if (survey(g, frame)) return;
     if (g->trial) {
         if (held < MASU_GOVERNOR_TRIAL &&
-            masu_governor_predict(g, g->rung) < TRIAL_MOST * g->target)
+            masu_governor_predict(g, g->rung) < OTHER * g->target)
             return;
         end_trial(g, frame, over);
         if (over) return;
@@ -375,7 +344,7 @@ static void choose(masu_governor *g, uint64_t frame) {
     }
     uint64_t still = frame - (g->restless > g->changed ? g->restless : g->changed);
     if (fell_in_vain(g, frame, still)) return;
-    if (g->settled_load < 0.0 && still * 2 >= SETTLE_WAIT * dwell) g->settled_load = g->load;
+    if (g->settled_load < 0.0 && still >= SETTLE_WAIT * dwell) g->settled_load = g->load;
     uint32_t r = g->odd_count ? g->rung : rise(g, frame, lead);
     if (r == g->rung) {
         if (!g->odd_count) g->urged = 0;
@@ -383,15 +352,15 @@ static void choose(masu_governor *g, uint64_t frame) {
         try_clock(g, frame, still);
         return;
     }
-    if (g->urged && (held >= HOLD || g->urged > 1)) {
+    if (g->urged && (held >= MASU_GOVERNOR_HOLD || g->urged > 1)) {
         g->urged = 0;
         g->rising = 0; /* the result is no failed rise at this load */
         change(g, frame, r, MASU_GOVERNOR_REASON_UP);
         return;
     }
     int worth = g->cost[r] >= STEP_UP * g->cost[g->rung] || r == g->best;
-    if (held < dwell || (!worth && held * 2 < STEP_WAIT * dwell) ||
-        (g->settled_load >= 0.0 && g->load > (1.0 - SETTLE_BAND) * g->settled_load) ||
+    if (held < dwell || (!worth && (double)held < STEP_WAIT * (double)dwell) ||
+        (g->settled_load >= 0.0 && g->load * MASU_SURVEY_GAIN > g->settled_load) ||
         repeats_a_mistake(g)) {
         g->reason = MASU_GOVERNOR_REASON_WAIT;
         return;
@@ -411,7 +380,7 @@ static int begin(masu_governor *g, uint64_t frame) {
 
 static void pace(masu_governor *g, uint64_t frame, int excluded) {
     double ms = g->known
-                    ? masu_governor_upper(g, g->rung, masu_governor_lead(g, frame), 1, MARGIN_REST)
+                    ? masu_governor_upper(g, g->rung, masu_governor_lead(g, frame), 1, MARGIN_KEEP)
                     : 0.0;
     masu_pacing_choose(&g->pacing, frame, masu_largest(ms, g->trust.cpu), g->target, excluded);
 }

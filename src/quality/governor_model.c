@@ -12,35 +12,38 @@
 
 /* ---- Constants: times in frames, standard deviations, or ratios ------------------------------ */
 
-#define PAUSE 1e3 /* ms: a longer frame is a pause, not load */
+/* Relative deviation of a sample before noise is measured. That of most GPUs, 2 %. */
 #define NOISE_FIRST 0.02
-#define NOISE_LEAST 0.003 /* the best that timers achieve */
-#define NOISE_MOST 0.5
+/* Samples in the mean of the noise: a second at 60 Hz. */
 #define NOISE_WINDOW 64u
-#define FIXED_PRIOR 0.1   /* initial fixed cost and its deviation, of the first time */
-#define LOAD_DRIFT 0.0025 /* process noise: relative deviation of the load per frame, */
-#define SLOPE_DRIFT 0.009 /* and of its slope, while the load changes */
-#define REST 0.04         /* factor on both while the load is steady */
-#define TREND_WEIGHT 0.2  /* weight of the newest innovation in their mean */
-#define TREND_REST 0.7    /* deviations: white noise has a smaller mean, */
-#define TREND_MOVES 1.1   /* from this one on the load certainly changes; */
-#define TREND_MOST 6.0    /* upper bound of the factor that loosens a lagging filter */
-#define SLOPE_MOST 0.5    /* of the load per frame: more is a jump */
+/* Of the first time: initial fixed cost and its deviation. */
+#define FIXED_PRIOR 0.1
+/* Relative deviation of the slope of the load per frame, while the load changes. Fitted to the
+ * simulated loads: less lags in sines of 50 frames, more follows the noise. */
+#define SLOPE_DRIFT 0.009
+/* Factor on it while the load is steady: the mean then extends over 8 frames and not 2. */
+#define REST 0.04
+/* Weight of the newest innovation in their mean, and deviations of that mean. The mean of white
+ * noise has a deviation of sqrt(w / (2 - w)) = 0.33: REST is twice that, MOVES three times. */
+#define TREND_WEIGHT 0.2
+#define TREND_REST 0.7
+#define TREND_MOVES 1.1
 /* Relative deviation of a prior cost. A larger one would attribute changes of the load to the
  * cost. */
 #define COST_DEVIATION 0.005
-#define COST_RANGE 4.0    /* largest ratio of a cost to its prior, either way */
-#define GATE 3.0          /* deviations: samples farther away are outliers, */
-#define GATE_LEAST 0.2    /* except within this fraction of the prediction */
-#define ODD_AGREE 1.5     /* factor within which two outliers agree */
-#define ODD_FAR 4.0       /* factor: outliers farther above, not confirmed by the wall clock, */
-#define ODD_FAR_COUNT 3u  /* need this many that agree; */
-#define ODD_NEAR_COUNT 8u /* less far above: this many; */
-#define ODD_LIE_COUNT 90u /* below the least plausible time: likely a stopped timer */
-#define LEAST_TIME 0.02   /* of the target; plausible is above this and half the fixed cost */
-#define ODD_PAUSE_COUNT 8u
-#define LEAD_MOST 8.0      /* frames: limit of extrapolation to the present */
-#define RISE_FOLLOWS 0.8   /* of the first time after a rise: less shows a clock that follows */
+/* Factor: a cost is at most this far from its prior, and samples beyond this factor of the
+ * prediction need more that agree, unless two clocks confirm them. Clocks of one GPU differ by less
+ * in normal use. */
+#define FAR 4.0
+#define FAR_COUNT 3u /* above: two may be consecutive spikes */
+/* Below the least plausible time: likely a stopped timer. 1.5 s at 60 Hz. */
+#define LIE_COUNT 90u
+#define GATE 3.0 /* deviations: samples farther away are outliers, one of 370 of white noise; */
+/* Of the prediction: samples within this fraction are no outliers. Ordinary changes of load. */
+#define GATE_LEAST 0.2
+#define ODD_AGREE 1.5 /* factor within which two outliers agree */
+/* Of the first time after a rise: less shows a clock that follows. Steady loads differ less. */
+#define RISE_FOLLOWS 0.8
 
 #define NEVER UINT64_MAX
 
@@ -58,7 +61,7 @@ void masu_governor_model_init(masu_governor *g) {
 
 /* 0: steady load; 1: changing load; more: the filter lags. */
 static double late(const masu_governor *g) {
-    return masu_within((fabs(g->trend) - TREND_REST) / (TREND_MOVES - TREND_REST), 0.0, TREND_MOST);
+    return masu_largest((fabs(g->trend) - TREND_REST) / (TREND_MOVES - TREND_REST), 0.0);
 }
 
 double masu_governor_moves(const masu_governor *g) { return masu_within(late(g), 0.0, 1.0); }
@@ -137,7 +140,7 @@ static void follow_noise(masu_governor *g, uint32_t rung, double ms) {
         g->noise_samples += g->noise_samples < NOISE_WINDOW;
         uint32_t n = g->noise_samples + 8 < NOISE_WINDOW ? g->noise_samples + 8 : NOISE_WINDOW;
         g->noise += (masu_within(d, 0.0, 3.0 * g->noise) - g->noise) / (double)n;
-        g->noise = masu_within(g->noise, NOISE_LEAST, NOISE_MOST);
+        g->noise = masu_within(g->noise, MASU_GOVERNOR_NOISE_LEAST, MASU_GOVERNOR_NOISE_MOST);
     }
     g->before[1] = g->before[0];
     g->before[0] = ms;
@@ -149,13 +152,12 @@ static void follow_noise(masu_governor *g, uint32_t rung, double ms) {
 static void advance(masu_governor *g, double frames) {
     double(*p)[3] = g->p;
     double q = REST + (1.0 - REST) * late(g);
-    double size = masu_largest(g->load, 0.02 * g->target);
+    double size = masu_largest(g->load, g->target / MASU_TRUST_RANGE);
     g->load += g->slope * frames;
     p[1][1] += 2.0 * frames * p[1][2] + frames * frames * p[2][2];
     p[0][1] += frames * p[0][2];
     p[1][2] += frames * p[2][2];
-    double load = LOAD_DRIFT * size * q, slope = SLOPE_DRIFT * size * q;
-    p[1][1] += frames * load * load;
+    double slope = SLOPE_DRIFT * size * q;
     p[2][2] += frames * slope * slope;
     p[1][0] = p[0][1];
     p[2][1] = p[1][2];
@@ -184,12 +186,12 @@ static int is_certain(masu_governor *g, const masu_governor_sample *s, double ms
     int sign = ms > expected ? 1 : -1;
     double load = ms / g->cost[s->rung];
     uint32_t needed = 2;
-    if (!sure && ms > ODD_FAR * expected) needed = ODD_FAR_COUNT;
-    if (!sure && ms * ODD_FAR < expected) {
-        int can_be = ms >= masu_largest(0.5 * g->fixed, LEAST_TIME * g->target);
-        needed = can_be ? ODD_NEAR_COUNT : ODD_LIE_COUNT;
+    if (!sure && ms > FAR * expected) needed = FAR_COUNT;
+    if (!sure && ms * FAR < expected) {
+        int can_be = ms >= masu_largest(0.5 * g->fixed, g->target / MASU_TRUST_RANGE);
+        needed = can_be ? MASU_GOVERNOR_HOLD : LIE_COUNT;
     }
-    if (ms > PAUSE && ms > ODD_FAR * expected) needed = ODD_PAUSE_COUNT;
+    if (ms > MASU_TRUST_RANGE * g->target && ms > FAR * expected) needed = MASU_GOVERNOR_HOLD;
     int same = g->odd_count && g->odd_sign == sign && load < ODD_AGREE * g->odd_load &&
                load * ODD_AGREE > g->odd_load;
     g->odd_count = same ? g->odd_count + 1 : 1;
@@ -205,7 +207,7 @@ static void follow_fixed(masu_governor *g, const masu_governor_sample *s, double
     double fixed = s->fixed_ms * g->trust.unit;
     if (!(fixed > 0.0 && fixed <= ms) || g->trust.source != MASU_GOVERNOR_SOURCE_GPU) return;
     fixed += g->trust.overhead;
-    double d = 0.1 * fixed + 0.02 * g->target;
+    double d = FIXED_PRIOR * fixed + g->target / MASU_TRUST_RANGE;
     correct(g, h, fixed - g->fixed, d * d);
 }
 
@@ -228,7 +230,7 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     double state = g->p[0][0] + 2.0 * c * g->p[0][1] + c * c * g->p[1][1];
     double pixel = c * g->load, rung = pixel * pixel * g->cost_variance[s->rung];
     double variance = masu_largest(state, 0.0) + rung + own, deviation = sqrt(variance);
-    if (ms < ODD_FAR * expected && ms * ODD_FAR > expected) follow_noise(g, s->rung, ms);
+    if (ms < FAR * expected && ms * FAR > expected) follow_noise(g, s->rung, ms);
     if (fabs(innovation) > masu_largest(GATE * deviation, GATE_LEAST * expected)) {
         if (is_certain(g, s, ms, expected, sure)) {
             /* At a new rung the cost may be wrong; at the same rung the load has changed. */
@@ -257,14 +259,12 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     if (pixel > 0.0) {
         double cost = c * (1.0 + share * innovation / pixel);
         g->cost[s->rung] =
-            masu_within(cost, g->prior[s->rung] / COST_RANGE, g->prior[s->rung] * COST_RANGE);
+            masu_within(cost, g->prior[s->rung] / FAR, g->prior[s->rung] * FAR);
     }
     g->cost_variance[s->rung] *= 1.0 - share;
     follow_fixed(g, s, ms);
     g->fixed = masu_within(g->fixed, 0.0, ms);
     g->load = masu_within(g->load, 1e-6 * g->target, 1e9 * g->target);
-    double most = SLOPE_MOST * masu_largest(g->load, 0.02 * g->target);
-    g->slope = masu_within(g->slope, -most, most);
 }
 
 /* Detects a clock that follows the load: a frame misses the target right after a rise, and the same
@@ -346,5 +346,6 @@ double masu_governor_predict(const masu_governor *g, uint32_t rung) {
 }
 
 double masu_governor_lead(const masu_governor *g, uint64_t frame) {
-    return masu_within(frame > g->newest ? (double)(frame - g->newest) : 0.0, 0.0, LEAD_MOST);
+    double lead = frame > g->newest ? (double)(frame - g->newest) : 0.0;
+    return masu_within(lead, 0.0, (double)MASU_GOVERNOR_HOLD);
 }

@@ -8,10 +8,20 @@
 #include "quality/survey.h"
 #include "quality/trust.h"
 
-#define MASU_GOVERNOR_RUNGS 16u
-/* Margin for selecting a rung, in deviations of one sample. */
+#define MASU_GOVERNOR_RUNGS MASU_SURVEY_RUNGS
+/* Deviations of one sample: margin for selecting a rung. White noise exceeds it in less than one of
+ * 100 frames. */
 #define MASU_GOVERNOR_MARGIN 2.5
-#define MASU_GOVERNOR_TRIAL 12u /* frames of a trial of a better rung */
+/* Frames after a rise in which the new rung is judged: a few slow clocks' measurement periods. */
+#define MASU_GOVERNOR_TRIAL 12u
+/* Frames: shortest stay on a rung, longest extrapolation, unconfirmed outliers that must agree.
+ * More than the delay of samples, and too short to be noticed. */
+#define MASU_GOVERNOR_HOLD 8u
+/* Largest exponent of back-off: waits grow up to 64 times, half a minute for 24 frames. */
+#define MASU_GOVERNOR_DOUBLINGS 6u
+/* Relative deviation of a sample: the best that timers achieve, and more than any usable clock. */
+#define MASU_GOVERNOR_NOISE_LEAST 0.003
+#define MASU_GOVERNOR_NOISE_MOST 0.5
 
 typedef struct masu_governor_rung {
     double scale; /* render size / output size */
@@ -100,7 +110,7 @@ double masu_governor_predict(const masu_governor *g, uint32_t rung);
  * deviations. falls: extrapolate a falling load too; otherwise only a rising one. */
 double masu_governor_upper(const masu_governor *g, uint32_t rung, double lead, int falls,
                            double margin);
-/* Frames from the newest sample to this frame, at most the limit of extrapolation. */
+/* Frames from the newest sample to this frame, at most MASU_GOVERNOR_HOLD. */
 double masu_governor_lead(const masu_governor *g, uint64_t frame);
 /* 0: steady load; 1: certainly changing load. */
 double masu_governor_moves(const masu_governor *g);

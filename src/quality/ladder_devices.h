@@ -1,6 +1,7 @@
-/* ladder_devices.h: what the rungs of ladder_tables.h cost on classes of GPUs, relative to the first rung; part of
- * ladder.c. COMPUTED by the cost model from the instructions that the GPUs' own compilers emit (masu-lab model
- * --isa), not measured on any of them. Written by `make ladder-devices`: not to be edited. */
+/* ladder_devices.h: what the rungs of ladder_tables.h cost on classes of GPUs, relative to the
+ * first rung; part of ladder.c. COMPUTED by the cost model from the instructions that the GPUs'
+ * own compilers emit (masu-lab model --isa), not measured on any of them. Written by `make
+ * ladder-devices`: not to be edited. */
 /* clang-format off */
 #ifndef MASU_LADDER_DEVICES_H
 #define MASU_LADDER_DEVICES_H

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#define LENGTH_MOST 16u  /* frames; a longer rise is a separate load */
 #define PERIOD_MOST 320u /* maximum frames between spikes; rarer ones are handled one by one */
 #define ALIKE 1.4        /* factor within which peaks are similar */
 #define ENOUGH 3u        /* spikes that are remembered */
@@ -49,7 +48,7 @@ void masu_spikes_follow(masu_spikes *s, uint64_t frame, double load, int over) {
         if (load < 0.5 * (s->calm + s->top)) {
             s->open = 0;
             add(s);
-        } else if (frame - s->fell > LENGTH_MOST) {
+        } else if (frame - s->fell > MASU_SPIKE_FRAMES) {
             forget(s, load);
         }
         return;
@@ -57,7 +56,7 @@ void masu_spikes_follow(masu_spikes *s, uint64_t frame, double load, int over) {
     int high = s->count && is_high(s, load);
     if (high && !s->high) s->rose = frame;
     s->high = high;
-    if (high && frame - s->rose > LENGTH_MOST) {
+    if (high && frame - s->rose > MASU_SPIKE_FRAMES) {
         forget(s, load);
     } else if (high && s->count >= ENOUGH) {
         s->last = frame;
@@ -76,5 +75,5 @@ double masu_spikes_peak(const masu_spikes *s) { return s->count >= ENOUGH ? s->p
 
 int masu_spikes_now(const masu_spikes *s, uint64_t frame, double load) {
     return s->count >= ENOUGH && s->high && load < ALIKE * s->peak &&
-           frame - s->rose <= LENGTH_MOST;
+           frame - s->rose <= MASU_SPIKE_FRAMES;
 }

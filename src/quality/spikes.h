@@ -9,6 +9,9 @@
 
 #include <stdint.h>
 
+/* Longest spike. A longer rise of load or time is a separate load. */
+#define MASU_SPIKE_FRAMES 16u
+
 typedef struct masu_spikes {
     double calm;     /* load between the spikes */
     double top;      /* highest load since the fall that a rise of the load has caused */

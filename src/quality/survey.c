@@ -1,6 +1,8 @@
 /* survey.c: see survey.h. */
 #include "quality/survey.h"
 
+#include "quality/spikes.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -12,16 +14,13 @@
 #define LONGER_LEAST 4u         /* fewest times that can show that a rung takes longer, */
 #define LONGER_MARGIN 3.0       /* by this many standard errors */
 #define SPREAD 3.0              /* standard errors by which a mean of few times may be too high */
-#define HOLD_FRAMES 16u         /* a shorter excursion from the range is a spike */
-#define TIGHT 1.1               /* an answer with a smaller range has no least time */
 #define WAIT_FIRST 60u          /* frames that an answer holds at least; doubles up to the most */
 #define WAIT_MOST (64u * WAIT_FIRST)
 #define CHECK 60u            /* times `wait`: then it is measured again in any case */
 #define UNDONE_COUNT 4u      /* times of the rung below that decide whether a rise has failed: */
-#define UNDONE_RANGE 0.04    /* they differ by less, plus the noise, from those before the rise */
+/* they differ by less than MASU_SURVEY_GAIN, plus the noise, from those before the rise */
 #define FAILURES 2u          /* failed rises in a row that make a barrier */
-#define BARRIER_RANGE 1.15   /* a larger change of the time of the rung below ends the barrier, */
-#define BARRIER_FRAMES 3600u /* as do this many frames */
+#define BARRIER_FRAMES 3600u /* these end the barrier */
 
 void masu_survey_forget(masu_survey *s) {
     memset(s->count, 0, sizeof s->count);
@@ -36,14 +35,13 @@ void masu_survey_sample(masu_survey *s, uint64_t frame, uint32_t rung, double ms
     s->last[rung] = frame;
 }
 
-void masu_survey_begin(masu_survey *s, uint64_t frame, uint32_t cheapest, double range) {
+void masu_survey_begin(masu_survey *s, uint64_t frame, uint32_t cheapest) {
     for (uint32_t r = 0; r < MASU_SURVEY_RUNGS; r++) {
         if (frame > s->last[r] && frame - s->last[r] > FRESH) s->count[r] = 0;
     }
     s->active = 1;
     s->found = 0;
     s->low = s->cheapest = cheapest;
-    s->range = range;
     s->high = 0;
     s->any = 0;
 }
@@ -81,10 +79,10 @@ void masu_survey_answer(masu_survey *s, uint64_t frame) {
 
 int masu_survey_holds(masu_survey *s, uint64_t frame, uint32_t rung, double ms) {
     if (!s->found) return 0;
-    if (ms < s->range * s->ms && s->ms < s->range * ms) s->near = frame;
+    if (ms < MASU_SURVEY_RANGE * s->ms && s->ms < MASU_SURVEY_RANGE * ms) s->near = frame;
     uint64_t since = frame - s->answered;
     int is_old = since > (uint64_t)CHECK * s->wait ||
-                 (frame - s->near > HOLD_FRAMES && (since > s->wait || s->range < TIGHT));
+                 (frame - s->near > MASU_SPIKE_FRAMES && since > s->wait);
     if (rung != s->low || is_old) s->found = 0;
     return s->found;
 }
@@ -102,7 +100,7 @@ void masu_survey_undo(masu_survey *s, uint32_t to) {
 }
 
 uint32_t masu_survey_barrier(masu_survey *s, uint64_t frame, double ms, double noise) {
-    double range = 1.0 + UNDONE_RANGE + noise;
+    double range = MASU_SURVEY_GAIN + noise;
     if (s->undone && s->count[s->below] >= UNDONE_COUNT) {
         int same = s->mean[s->below] < range * s->before && s->before < range * s->mean[s->below];
         s->undone = 0;
@@ -113,9 +111,10 @@ uint32_t masu_survey_barrier(masu_survey *s, uint64_t frame, double ms, double n
             s->barrier_near = s->barrier_made = frame;
         }
     }
-    if (ms < BARRIER_RANGE * s->barrier_ms && s->barrier_ms < BARRIER_RANGE * ms)
+    if (ms < MASU_SURVEY_RANGE * s->barrier_ms && s->barrier_ms < MASU_SURVEY_RANGE * ms)
         s->barrier_near = frame;
-    int is_old = frame - s->barrier_near > HOLD_FRAMES || frame - s->barrier_made > BARRIER_FRAMES;
+    int is_old = frame - s->barrier_near > MASU_SPIKE_FRAMES ||
+                 frame - s->barrier_made > BARRIER_FRAMES;
     if (s->barrier && is_old) s->barrier = s->failures = 0;
     return s->barrier;
 }

@@ -11,7 +11,12 @@
 #include <stdint.h>
 
 #define MASU_SURVEY_RUNGS 16u
+/* Ratio: times, costs and loads within it are equal. A rung that saves less is not worth its loss
+ * of quality. */
 #define MASU_SURVEY_GAIN 1.05
+/* Ratio: a result of measurements holds while times stay within it. Three times the change that
+ * counts as equal, so that drift and noise do not end it. */
+#define MASU_SURVEY_RANGE 1.15
 
 typedef enum masu_survey_verdict {
     MASU_SURVEY_UNKNOWN, /* too few times */
@@ -30,8 +35,7 @@ typedef struct masu_survey {
     uint32_t cheapest; /* the rung that the others are compared with */
     uint32_t low;      /* the best rung found to be as cheap; the answer at the end */
     uint32_t high;     /* 1 + the last rung found to take longer; 0: none */
-    int any;      /* the model was wrong: rungs that it expects to take longer are measured too */
-    double range; /* the answer holds while times differ by at most this factor */
+    int any; /* the model was wrong: rungs that it expects to take longer are measured too */
 
     /* Its answer. */
     int found;         /* it holds */
@@ -56,8 +60,8 @@ typedef struct masu_survey {
 /* Forgets all times, because the load has changed. */
 void masu_survey_forget(masu_survey *s);
 void masu_survey_sample(masu_survey *s, uint64_t frame, uint32_t rung, double ms);
-/* Starts a survey. range: see the member. */
-void masu_survey_begin(masu_survey *s, uint64_t frame, uint32_t cheapest, double range);
+/* Starts a survey. */
+void masu_survey_begin(masu_survey *s, uint64_t frame, uint32_t cheapest);
 /* Ends it with the answer `low`. */
 void masu_survey_answer(masu_survey *s, uint64_t frame);
 /* Number of times with this relative noise that resolve MASU_SURVEY_GAIN. */

@@ -11,7 +11,6 @@
 #define DISTRUST_MOST 30.0
 #define UNIT_SAMPLES 16u  /* consecutive samples that agree on a factor of the clock's unit */
 #define FROZEN_SAMPLES 4u /* bit-identical GPU times while the wall-clock time changes */
-#define SCALE_RANGE 64.0  /* wall-clock times this far from the target are not used to find units */
 /* of the host's own work: a shorter wall-clock time means that the host was late */
 #define LATE 1.1
 #define VSYNC_RANGE 0.015 /* of a refresh: tolerance for whole multiples */
@@ -38,8 +37,8 @@ static int agrees(double gpu, double wall) {
 static void find_unit(masu_trust *t, double target, double raw, double wall) {
     static const double units[] = {1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9};
     double unit = 0.0;
-    if (!(raw > 0.0 && raw < 1e19) || !masu_is_time(wall) || wall > SCALE_RANGE * target ||
-        wall < target / SCALE_RANGE)
+    if (!(raw > 0.0 && raw < 1e19) || !masu_is_time(wall) || wall > MASU_TRUST_RANGE * target ||
+        wall < target / MASU_TRUST_RANGE)
         return;
     for (uint32_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (agrees(raw * units[i], wall)) unit = units[i];

@@ -46,6 +46,10 @@ static inline double masu_largest(double a, double b) { return a > b ? a : b; }
 /* Whether a time in ms is plausible for a frame. False for NaN. */
 static inline int masu_is_time(double ms) { return ms > 0.0 && ms <= 1e4; }
 
+/* Factor: times this far from the target, either way, are pauses or clock errors, not load. About
+ * 1 s at 60 Hz. */
+#define MASU_TRUST_RANGE 64.0
+
 void masu_trust_start(masu_trust *t);
 /* GPU time of a sample, ms; 0: none. *sure: two clocks agree. `target`: target time of a frame. */
 double masu_trust_time(masu_trust *t, double target, const masu_governor_sample *s, int *sure);

@@ -604,7 +604,7 @@ typedef struct masu_blob_shadow {
 #define MASU_SHADOW_SIZE_MAX 8192u
 
 #define MASU_SDF_ANCHORED 1u /* the update SPIR-V moves the SDF's space to frame.anchor */
-#define MASU_SDF_TIMELESS 2u /* no slot depends on time */
+#define MASU_SDF_TIMELESS 2u /* neither the field nor its surfaces depend on time */
 
 typedef struct masu_blob_sdf {
     float bounds_min[3]; /* world space; the SDF has no surface outside */

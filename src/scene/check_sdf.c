@@ -56,7 +56,7 @@ masu_result masu_check_sdf(reader *r) {
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
         int needed = k == MASU_BLOB_MARCH_SPIRV || k == MASU_BLOB_CLASSIFY_SPIRV ||
                      k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE4_SPIRV ||
-                     k == MASU_BLOB_VELOCITY_SPIRV || k == MASU_BLOB_SILHOUETTES_SPIRV;
+                     k == MASU_BLOB_SILHOUETTES_SPIRV;
         /* The constants of an anchored SDF depend at least on the floating origin. */
         if (k == MASU_BLOB_UPDATE_SPIRV) {
             needed = s->flags & MASU_SDF_ANCHORED || v->code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words;
@@ -76,7 +76,8 @@ void masu_describe_sdf(const reader *r, masu_scene_data *out) {
     out->sdf_block_words = r->view.sdf->block_words;
     out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];
     out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
-    out->sdf_timed = out->sdf_dynamic && !(r->view.sdf->flags & MASU_SDF_TIMELESS);
+    out->sdf_timed = !(r->view.sdf->flags & MASU_SDF_TIMELESS);
+    out->sdf_static = r->view.code[MASU_BLOB_VELOCITY_SPIRV].words == NULL;
     out->sdf_anchored = (r->view.sdf->flags & MASU_SDF_ANCHORED) != 0;
     out->sdf_occlusion = r->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL;
     out->sdf_casts = r->view.code[MASU_BLOB_LOCAL_SHADOW_SPIRV].words != NULL;

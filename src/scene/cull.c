@@ -143,25 +143,37 @@ static float radius(const masu_cull_plane *p, const float h[3], uint32_t kind) {
     return ((p->a[0] * h[0] + p->a[1] * h[1]) + p->a[2] * h[2]) + p->slack[kind];
 }
 
-/* Returns the planes of `mask` that intersect the group, or ALL_OUT. *last: the plane to test
- * first; set to the plane that rejected the group. */
 #define ALL_OUT 0x80u
 
+/* Returns 0 if the group is inside of plane p, its bit if it intersects it, ALL_OUT if it is
+ * outside. */
+static inline uint32_t test_plane(const masu_cull_node *node, const masu_cull_view *view,
+                                  uint32_t p) {
+    float m = signed_distance(&view->planes[p], node->box.center);
+    float r = radius(&view->planes[p], node->box.half, 1);
+    if (m + r < 0.0f) return ALL_OUT;
+    return m - r >= 0.0f ? 0 : 1u << p;
+}
+
+/* Returns the planes of `mask` that intersect the group, or ALL_OUT. *last: the plane to test
+ * first, before the others in order; set to the plane that rejected the group. */
 static uint32_t test_node(const masu_cull_node *node, const masu_cull_view *view, uint32_t mask,
                           uint8_t *last, uint64_t *tests) {
-    uint32_t first = *last & 7u, cut = 0;
-    for (uint32_t i = 0; i <= view->count; i++) {
-        /* The last rejecting plane first, then the others in order. */
-        uint32_t p = i ? i - 1 : first;
-        if ((i && p == first) || !(mask >> p & 1u)) continue;
-        float m = signed_distance(&view->planes[p], node->box.center);
-        float r = radius(&view->planes[p], node->box.half, 1);
+    uint32_t first = *last & 7u, cut = 0, left = mask & ~(1u << first);
+    if (left != mask) {
         ++*tests;
-        if (m + r < 0.0f) {
+        cut = test_plane(node, view, first);
+        if (cut == ALL_OUT) return ALL_OUT;
+    }
+    for (uint32_t p = 0; left; p++, left >>= 1) {
+        if (!(left & 1u)) continue;
+        ++*tests;
+        uint32_t found = test_plane(node, view, p);
+        if (found == ALL_OUT) {
             *last = (uint8_t)p;
             return ALL_OUT;
         }
-        if (!(m - r >= 0.0f)) cut |= 1u << p;
+        cut |= found;
     }
     return cut;
 }
@@ -199,29 +211,29 @@ static uint32_t outside_simd(const masu_cull_set *set, uint32_t at, const masu_c
 #define outside_simd outside_plain
 #endif
 
-static void mark(const masu_cull_set *set, uint32_t at, uint32_t kept, uint32_t lanes,
-                 uint8_t *marks, uint8_t bit) {
-    for (uint32_t l = 0; l < lanes; l++) {
-        uint8_t *to = &marks[set->items[at + l]];
-        *to = (uint8_t)(kept >> l & 1u ? *to | bit : *to & ~(uint32_t)bit);
+static void mark(const masu_cull_set *set, uint32_t at, uint32_t kept, uint8_t *marks,
+                 uint8_t bit) {
+    for (; kept; kept >>= 1, at++) {
+        if (kept & 1u) marks[set->items[at]] |= bit;
     }
 }
 
+/* Sets the bit for the boxes that no plane of `mask` rejects. The bits of the others are clear. */
 static inline void test_items(const masu_cull_set *set, const masu_cull_view *view, uint32_t first,
                               uint32_t count, uint32_t mask, uint8_t *marks, uint8_t bit,
                               uint64_t *tests, int simd) {
     for (uint32_t at = first, end = first + count; at < end; at += LANES) {
         uint32_t lanes = end - at < LANES ? end - at : LANES;
         uint32_t kept = (1u << lanes) - 1u;
-        for (uint32_t p = 0; p < view->count && kept; p++) {
-            if (!(mask >> p & 1u)) continue;
+        const masu_cull_plane *plane = view->planes;
+        for (uint32_t left = mask; left && kept; left >>= 1, plane++) {
+            if (!(left & 1u)) continue;
             /* Boxes that are rejected already need no work in a lane, but are counted as
              * tested, because the SIMD variant tests all four. */
             *tests += lanes;
-            kept &= ~(simd ? outside_simd(set, at, &view->planes[p])
-                           : outside_plain(set, at, &view->planes[p]));
+            kept &= ~(simd ? outside_simd(set, at, plane) : outside_plain(set, at, plane));
         }
-        mark(set, at, kept, lanes, marks, bit);
+        mark(set, at, kept, marks, bit);
     }
 }
 
@@ -257,6 +269,8 @@ static inline void walk(const masu_cull_set *set, const masu_cull_view *view, ui
     test_items(set, view, set->tree_count, set->count - set->tree_count, all, marks, bit, &tests,
                simd);
     for (uint32_t i = 0; i < set->moved_count; i++) {
+        uint8_t *stale = &marks[set->items[set->moved[i]]]; /* what the hierarchy has found */
+        *stale = (uint8_t)(*stale & ~(uint32_t)bit);
         test_items(set, view, set->moved[i], 1, all, marks, bit, &tests, simd);
     }
     counts->nodes += nodes;
@@ -264,7 +278,14 @@ static inline void walk(const masu_cull_set *set, const masu_cull_view *view, ui
 }
 
 static void clear(const masu_cull_set *set, uint8_t *marks, uint8_t bit) {
-    for (uint32_t i = 0; i < set->count; i++) marks[i] = (uint8_t)(marks[i] & ~(uint32_t)bit);
+    uint64_t others = ~(0x0101010101010101u * (uint64_t)bit), eight;
+    uint32_t i = 0;
+    for (; i + 8 <= set->count; i += 8) {
+        memcpy(&eight, marks + i, sizeof eight);
+        eight &= others;
+        memcpy(marks + i, &eight, sizeof eight);
+    }
+    for (; i < set->count; i++) marks[i] = (uint8_t)(marks[i] & ~(uint32_t)bit);
 }
 
 void masu_cull(const masu_cull_set *set, const masu_cull_view *view, uint8_t *state, uint8_t *marks,

@@ -4,11 +4,10 @@
 #include <math.h>
 
 float masu_lod_scale(const float transform[12]) {
-    float sum = 0.0f;
-    for (int row = 0; row < 3; row++) {
-        for (int k = 0; k < 3; k++) sum += transform[row * 4 + k] * transform[row * 4 + k];
-    }
-    return sqrtf(sum);
+    const float *a = transform, *b = transform + 4, *c = transform + 8;
+    float sum = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    sum = sum + b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
+    return sqrtf(sum + c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
 }
 
 uint32_t masu_lod_choose(const masu_blob_lod *lods, uint32_t count, float scale, float depth,

@@ -16,7 +16,7 @@ static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[
 
 /* ---- Checks ---------------------------------------------------------------------------------- */
 
-/* Squared area of the parallelogram of two half axes. */
+/* Area of the parallelogram of two half axes. */
 static double area_of(const float u[3], const float v[3]) {
     double c[3];
     for (uint32_t k = 0; k < 3; k++) {

@@ -30,8 +30,8 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t max_instances, max_primitives; /* of any one mesh */
     uint32_t draws;                         /* of one G-buffer pass, without LODs */
     uint64_t triangles;                     /* of all instances at their finest level */
-    /* Of these, slots of desc.reserve.meshes and their sizes; nodes: 0 unless rays trace them. All 0
-     * outside of a masu_frame_plan. */
+    /* Of these, slots of desc.reserve.meshes and their sizes; nodes: 0 unless rays trace them.
+     * All 0 outside of a masu_frame_plan. */
     uint32_t host_meshes, host_vertices, host_triangles, host_nodes;
 
     /* Movable models, their animations and skins. */
@@ -58,7 +58,8 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t sdf_params; /* run-time parameters */
     uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;  /* flag: slots depend on parameters or time */
-    uint32_t sdf_timed;    /* flag: some of these depend on time */
+    uint32_t sdf_timed;    /* flag: the field or its surfaces depend on time */
+    uint32_t sdf_static;   /* flag: the field never changes; its surfaces may */
     uint32_t sdf_anchored; /* flag: precise far from the origin (docs/sdf.md) */
 #ifdef MASU_LAB
     uint32_t sdf_march; /* bit per masu_march that the blob has code for */

@@ -7,6 +7,7 @@
 #include "image.h"
 #include "metric/image.h"
 #include "settings/ladder.h"
+#include "bench/page.h"
 #include "bench/report.h"
 #include "bench/sweep.h"
 
@@ -252,8 +253,9 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
         assert_non_null(strstr(cli_err, "gnuplot not found"));
     }
     char *page = read_file(in_scratch("whole/index.html"), NULL);
-    assert_non_null(strstr(page, "data:image/png;base64,iVBOR"));
+    assert_non_null(strstr(page, "data:image/jpeg;base64,/9j/"));
     assert_null(strstr(page, "src=\"h")); /* no external files */
+    assert_true(strlen(page) <= MASU_PAGE_BYTES);
     assert_non_null(strstr(page, "The ladder"));
     static const char *const parts[] = {"HDR-FLIP",   "hit/miss", "relMSE",
                                         "<td>-</td>", "Masu 0.",  " UTC: "};

@@ -15,6 +15,7 @@ static void open_governed(masu_session *s, uint32_t width, uint32_t height) {
     masu_session_desc d = test_desc("test_both", width, height);
     d.desc.rung_count = 4;
     for (uint32_t r = 0; r < 4; r++) d.desc.rungs[r].scale = 1.0f - 0.2f * (float)r;
+    d.desc.resizable = 1;
     d.desc.governor = (masu_governor_desc){.mode = MASU_GOVERNOR_ON, .wall_only = 1};
     open_session(s, &d);
 }
@@ -162,6 +163,27 @@ static void a_state_outlives_its_renderer(void **state) {
     close_session(&s);
 }
 
+/* After masu_resize the first frame has the rung for the new number of pixels, before any of its
+ * times are known: a better one without a dwell, or a cheaper one without a miss. */
+static void a_resize_selects_the_rung_at_once(void **state) {
+    (void)state;
+    masu_session s;
+    masu_stats_info stats;
+    open_governed(&s, 2 * W, 2 * H);
+    uint32_t large = steps(&s, 80, 60.0, &stats);
+    assert_int_equal(large, 3);
+    masu_targets t = s.desc.targets;
+    assert_int_equal(masu_resize(s.m, (VkExtent2D){W, H}, &t, NULL, &failure), MASU_OK);
+    assert_int_equal(steps(&s, 1, 15.0, &stats), 0);
+    uint64_t missed = stats.governor.missed;
+    assert_int_equal(steps(&s, 60, 15.0, &stats), 0);
+    t = s.desc.targets;
+    assert_int_equal(masu_resize(s.m, (VkExtent2D){2 * W, 2 * H}, &t, NULL, &failure), MASU_OK);
+    assert_int_equal(steps(&s, 30, 60.0, &stats), 3);
+    assert_int_equal(stats.governor.missed, missed);
+    close_session(&s);
+}
+
 static void without_a_governor_it_is_said(void **state) {
     (void)state;
     masu_session s;
@@ -186,6 +208,7 @@ int main(void) {
         cmocka_unit_test(unusual_frames_are_left_out),
         cmocka_unit_test(the_hosts_own_work_is_said),
         cmocka_unit_test(a_state_outlives_its_renderer),
+        cmocka_unit_test(a_resize_selects_the_rung_at_once),
         cmocka_unit_test(without_a_governor_it_is_said),
     };
     return cmocka_run_group_tests_name("governor_host", tests, NULL, NULL);

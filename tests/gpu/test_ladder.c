@@ -240,12 +240,45 @@ static void a_gpu_of_a_class_begins_with_what_was_computed_for_it(void **state) 
     close_session(&s);
 }
 
+/* easu_twice exceeds the registers of GPUs of Arm and Broadcom. */
+static void twice_the_size_takes_the_pass_that_fits_the_vendor(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t vendor, twice;
+    } vendors[] = {{0x1002, 1}, {0x8086, 1}, {0x5143, 1}, {0x10005, 1}, {0x13B5, 0}, {0x14E4, 0}};
+    masu_session_desc d = test_desc("test_both", 64, 48);
+    masu_session s;
+    static masu_plan_info plan;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.scale = 0.5f};
+    d.no_renderer = true;
+    open_session(&s, &d);
+    real_proc = s.desc.vulkan.get_instance_proc_addr;
+    s.desc.vulkan.get_instance_proc_addr = pretending_proc;
+    pretended.deviceType = VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    for (size_t i = 0; i < sizeof vendors / sizeof *vendors; i++) {
+        uint32_t seen = 0;
+        pretended.vendorID = vendors[i].vendor;
+        assert_int_equal(masu_plan(&s.desc, &plan, NULL), MASU_OK);
+        for (uint32_t p = 0; p < plan.pass_count; p++) {
+            int twice = !strcmp(plan.passes[p].name, "easu_twice");
+            if (!twice && strcmp(plan.passes[p].name, "easu") != 0) continue;
+            assert_int_equal(plan.passes[p].active != 0, twice == (int)vendors[i].twice);
+            seen++;
+        }
+        assert_int_equal(seen, 2);
+    }
+    s.desc.vulkan.get_instance_proc_addr = real_proc;
+    close_session(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_rung_is_drawn_and_nothing_is_made),
         cmocka_unit_test(a_rung_is_the_picture_of_that_rung_given_by_hand),
         cmocka_unit_test(memory_is_planned_once_for_all_rungs),
         cmocka_unit_test(a_gpu_of_a_class_begins_with_what_was_computed_for_it),
+        cmocka_unit_test(twice_the_size_takes_the_pass_that_fits_the_vendor),
     };
     return cmocka_run_group_tests_name("ladder", tests, NULL, NULL);
 }

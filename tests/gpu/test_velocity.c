@@ -447,6 +447,65 @@ static void a_field_by_hand_is_followed_along_its_normal(void **state) {
     close_session(&s);
 }
 
+/* The second of two frames with a moving camera: depths and half floats of velocities. */
+static void take_static(const char *scene, float depth[W * H], uint16_t velocity[4 * W * H],
+                        masu_camera cameras[2], const char *pass) {
+    masu_session s;
+    masu_commands commands;
+    masu_readback_image image;
+    masu_plan_info plan;
+    masu_session_desc d = test_desc(scene, W, H);
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
+    d.desc.rung_count = 1;
+    d.desc.debug.poison = 1;
+    open_session(&s, &d);
+    masu_plan_of(s.m, &plan);
+    for (uint32_t i = 0; i < plan.pass_count; i++) {
+        if (strstr(plan.passes[i].name, "velocity"))
+            assert_int_equal(plan.passes[i].active, strcmp(plan.passes[i].name, pass) == 0);
+    }
+    for (uint32_t n = 0; n < 2; n++) {
+        masu_frame_desc frame = {.camera = &cameras[n], .time = n};
+        draw(&s, &frame, &commands, NULL);
+    }
+    view_depths(read_image(&s, commands.slot, MASU_READBACK_DEPTH), &cameras[1], depth, W * H);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
+    memcpy(velocity, image.pixels, 4 * W * H * sizeof *velocity);
+    close_session(&s);
+}
+
+/* A field that reads a parameter has the pass that evaluates it; one without has the pass that does
+ * not, and the same velocities to the bit. With polygons, which rest too: by the formula. */
+static void a_static_field_moves_by_the_camera_alone(void **state) {
+    (void)state;
+    static float depth[2][W * H];
+    static uint16_t velocity[2][4 * W * H];
+    masu_camera c[2] = {{.position = {0.3, 0.2, 3.2}, .forward = {0, 0, -1}, .fov_y = 0.8f},
+                        {.position = {0.1, 0.3, 3.0}, .forward = {0.05f, -0.02f, -1}, .fov_y = 0.8f}};
+    c[0].near_distance = c[1].near_distance = 0.1f;
+    take_static("test_sphere_sdf", depth[0], velocity[0], c, "sdf_velocity_alone");
+    take_static("test_sphere_static", depth[1], velocity[1], c, "static_velocity_alone");
+    assert_memory_equal(depth[0], depth[1], sizeof *depth);
+    assert_memory_equal(velocity[0], velocity[1], sizeof *velocity);
+    take_static("test_both", depth[0], velocity[0], c, "static_velocity");
+    eye now = eye_of(&c[1]), was = eye_of(&c[0]);
+    double worst = 0, longest = 0;
+    uint32_t seen = 0;
+    for (int i = 0; i < W * H; i++) {
+        double x = i % W + 0.5, y = i / W + 0.5, px, py, pz, z = (double)depth[0][i];
+        vec rel = ray_through(&now, x, y);
+        if (z > 0) rel = vec_sub(vec_add(now.position, vec_scale(rel, z)), was.position);
+        project(&was, rel, &px, &py, &pz);
+        const uint16_t *v = &velocity[0][4 * i];
+        worst = worst_of(worst, hypot(half_float(v[0]) - (px - x), half_float(v[1]) - (py - y)));
+        worst = worst_of(worst, fabs(half_float(v[3]) - 1));
+        longest = fmax(longest, hypot(px - x, py - y));
+        seen += z > 0;
+    }
+    print_message("  longest motion %.2f px, error %.4f px\n", longest, worst);
+    assert_true(seen > W * H / 10 && seen < W * H && longest > 3 && worst < 0.02);
+}
+
 static void who_does_not_ask_has_no_velocities(void **state) {
     (void)state;
     masu_session s;
@@ -463,7 +522,7 @@ static void who_does_not_ask_has_no_velocities(void **state) {
         assert_int_equal(plan.passes[i].active, 0);
         assert_string_equal(plan.passes[i].why, "nothing reads velocities");
     }
-    assert_int_equal(found, 5);
+    assert_int_equal(found, 7);
     for (uint32_t i = 0; i < plan.image_count; i++) {
         if (strcmp(plan.images[i].name, "velocity") != 0) continue;
         assert_int_equal(plan.images[i].used, 0);
@@ -485,6 +544,7 @@ int main(void) {
         cmocka_unit_test(a_cut_forgets_the_frame_before),
         cmocka_unit_test(a_point_that_was_behind_the_camera_says_so),
         cmocka_unit_test(a_field_by_hand_is_followed_along_its_normal),
+        cmocka_unit_test(a_static_field_moves_by_the_camera_alone),
         cmocka_unit_test(who_does_not_ask_has_no_velocities),
     };
     return cmocka_run_group_tests_name("velocity", tests, make_truth, remove_truth);

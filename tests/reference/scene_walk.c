@@ -425,7 +425,7 @@ static const struct {
     [MASU_BLOB_CLASSIFY_SPIRV] = {2, 0},
     [MASU_BLOB_CONE8_SPIRV] = {2, 0},
     [MASU_BLOB_CONE4_SPIRV] = {2, 0},
-    [MASU_BLOB_VELOCITY_SPIRV] = {2, 0},
+    [MASU_BLOB_VELOCITY_SPIRV] = {1, 0},
     [MASU_BLOB_SILHOUETTES_SPIRV] = {2, 0},
     [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = {1, 0},
     [MASU_BLOB_UPDATE_SPIRV] = {1, 0},
@@ -463,7 +463,9 @@ static void read_code(walker *w) {
     int anchored = w->view.sdf && w->view.sdf->flags & MASU_SDF_ANCHORED;
     int timeless = w->view.sdf && w->view.sdf->flags & MASU_SDF_TIMELESS;
     expect(w, w->scene->sdf_dynamic == (uint32_t)timed, "sdf_dynamic");
-    expect(w, w->scene->sdf_timed == (uint32_t)(timed && !timeless), "sdf_timed");
+    expect(w, w->scene->sdf_timed == (uint32_t)(w->view.sdf && !timeless), "sdf_timed");
+    expect(w, w->scene->sdf_static == (uint32_t)(w->view.sdf && !w->view.code[MASU_BLOB_VELOCITY_SPIRV].words),
+           "sdf_static");
     expect(w, w->scene->sdf_anchored == (uint32_t)anchored, "sdf_anchored");
     expect(w, (w->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL) == (timed || anchored),
            "update SPIR-V");

@@ -44,6 +44,8 @@ static uint64_t light_names[4];
 static masu_sky sky;
 static masu_transparent transparents[8];
 static masu_back_to_front order[16];
+static masu_blob_lod lods[4];
+static uint8_t levels[4];
 static uint8_t group_states[4 * MASU_MAX_VIEWS], marks[4];
 static float boxes[6 * (4 + MASU_BOX_PADDING)], mesh_bounds[4][6];
 static uint32_t box_items[4], box_positions[4], moved[4], instance_meshes[4];
@@ -107,6 +109,8 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.occlusion.occluders = occluders;
     m.visible.group_states = group_states;
     m.visible.marks = marks;
+    m.visible.lods = lods;
+    m.visible.levels = levels;
     m.bounds.boxes = boxes;
     m.bounds.meshes = mesh_bounds;
     m.bounds.items = box_items;

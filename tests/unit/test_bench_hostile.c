@@ -7,12 +7,15 @@
 
 #include <cmocka.h>
 
+#include "bench/index.h"
+#include "bench/page.h"
 #include "bench/report.h"
 #include "cli/gnuplot.h"
 #include "cli/markup.h"
 #include "image.h"
 #include "support/files.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,6 +76,79 @@ static void make_folder(const char *name, const char *setting, const char *text)
     make_picture(path);
 }
 
+/* No element loads another file, and the size is within the limit of pages. */
+static void check_alone(const char *page) {
+    assert_in_range(strlen(page), 1, MASU_PAGE_BYTES);
+    for (const char *at = page; (at = strstr(at, "src=\"")); at++)
+        assert_int_equal(strncmp(at, "src=\"data:image/", 16), 0);
+    assert_null(strstr(page, "<link"));
+    assert_null(strstr(page, "url("));
+    assert_null(strstr(page, "@import"));
+}
+
+/* Rungs at the budget, above it, and none. */
+static void the_first_rung_within_the_budget_is_the_verdict(void **state) {
+    (void)state;
+    masu_row rows[3] = {{.wall_p50 = 40, .flip = 0.1, .rest_flip = 0.1},
+                        {.wall_p50 = 20, .gpu_p50 = 1, .flip = 0.2, .rest_flip = 0.4},
+                        {.wall_p50 = 30, .flip = 0.3, .rest_flip = 0.3}};
+    const masu_row *rungs[] = {&rows[0], &rows[1], &rows[2]};
+    masu_verdict v;
+    assert_false(masu_verdict_find(rungs, 0, &v));
+    assert_true(masu_verdict_find(rungs, 3, &v));
+    assert_true(!v.holds && v.rung == 1 && v.ms == 20.0 && fabs(v.error - 0.3) < 1e-9);
+    rows[2].wall_p50 = MASU_PAGE_BUDGET_MS;
+    assert_true(masu_verdict_find(rungs, 3, &v) && v.holds && v.rung == 2);
+    rows[2].wall_p50 = nextafter(MASU_PAGE_BUDGET_MS, 100.0);
+    assert_true(masu_verdict_find(rungs, 3, &v) && !v.holds && v.rung == 2);
+    rows[1].plausible = 1.0; /* timestamps count */
+    assert_true(masu_verdict_find(rungs, 3, &v) && v.holds && v.rung == 1 && v.ms == 1.0);
+}
+
+/* Noise does not compress: its size is halved until the image fits. */
+static void an_image_fits_its_bytes(void **state) {
+    (void)state;
+    static uint8_t rgba[256 * 256 * 4];
+    uint32_t seed = 1;
+    for (size_t i = 0; i < sizeof rgba; i++) rgba[i] = (uint8_t)((seed = seed * 1664525u + 1013904223u) >> 24);
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *f = open_memstream(&text, &bytes);
+    assert_true(masu_page_image(f, rgba, 256, 256, 6000, "shot", "<a \"b\">"));
+    assert_int_equal(fclose(f), 0);
+    assert_in_range(bytes, 1000, 6000 * 4 / 3 + 200);
+    assert_non_null(strstr(text, "alt=\"&lt;a &quot;b&quot;&gt;\" src=\"data:image/jpeg;base64,/9j/"));
+    free(text);
+}
+
+/* Two scenes, one with markup and URL syntax in its name, and one without a page. */
+static void the_index_links_every_scene(void **state) {
+    (void)state;
+    char error[1024], path[256];
+    uint32_t count;
+    masu_report_result result;
+    mkdir(in_scratch("all"), 0777);
+    snprintf(path, sizeof path, "%s", in_scratch("all"));
+    assert_false(masu_bench_index(path, &count, error, sizeof error));
+    static const char *const names[] = {"all/a<b>#%", "all/plain"};
+    for (int i = 0; i < 2; i++) {
+        char picture[256], folder[256];
+        make_folder(names[i], "scale=0.5", "x");
+        snprintf(picture, sizeof picture, "%s/pictures/scale=0.5.png", names[i]);
+        make_picture(picture);
+        snprintf(folder, sizeof folder, "%s", in_scratch(names[i]));
+        if (!masu_report_write(folder, &result, error, sizeof error)) fail_msg("%s", error);
+    }
+    assert_int_equal(remove(in_scratch("all/plain/index.html")), 0);
+    if (!masu_bench_index(path, &count, error, sizeof error)) fail_msg("%s", error);
+    assert_int_equal(count, 2);
+    char *page = read_file(in_scratch("all/index.html"), NULL);
+    assert_non_null(strstr(page, "href=\"./a%3Cb%3E%23%25/index.html\">a&lt;b&gt;#%</a>"));
+    assert_non_null(strstr(page, "href=\"./plain/ladder.json\">plain</a>"));
+    check_alone(page);
+    free(page);
+}
+
 static void what_a_folder_says_is_text_in_its_page(void **state) {
     (void)state;
     char error[1024], path[256];
@@ -82,7 +158,11 @@ static void what_a_folder_says_is_text_in_its_page(void **state) {
     snprintf(path, sizeof path, "%s", in_scratch("page"));
     if (!masu_report_write(path, &result, error, sizeof error)) fail_msg("%s", error);
     char *page = read_file(in_scratch("page/index.html"), NULL);
-    assert_null(strstr(page, "<script"));
+    const char *script = strstr(page, "<script>\n"); /* the page's own, and no other */
+    assert_non_null(script);
+    assert_null(strstr(page, "<script>'"));
+    assert_null(strstr(script + 1, "<script"));
+    check_alone(page);
     uint32_t shown = 0;
     for (const char *at = page; (at = strstr(at, "&lt;script&gt;")); at++) shown++;
     assert_true(shown >= 8); /* scene twice, hash, driver, depth, one of machine.json's, the omitted
@@ -203,6 +283,9 @@ static void every_field_of_markup_is_escaped(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_a_folder_says_is_text_in_its_page),
+        cmocka_unit_test(the_first_rung_within_the_budget_is_the_verdict),
+        cmocka_unit_test(an_image_fits_its_bytes),
+        cmocka_unit_test(the_index_links_every_scene),
         cmocka_unit_test(a_title_is_no_command_of_gnuplot),
         cmocka_unit_test(a_quoted_text_is_one_string_of_gnuplot),
         cmocka_unit_test(a_setting_does_not_lead_out_of_the_folder),

@@ -140,6 +140,20 @@ static void what_no_pass_could_run_is_refused(void **state) {
     }
 }
 
+/* Only what every device has and GLSL of the passes needs: Matrix, Shader, ImageQuery,
+ * DerivativeControl. */
+static void every_other_capability_is_refused(void **state) {
+    (void)state;
+    for (uint32_t capability = 0; capability < 128; capability++) {
+        support_blob_write(&blob, SUPPORT_ALL);
+        words_of(MASU_BLOB_MARCH_SPIRV)[CAPABILITY + 1] = capability;
+        if (capability != 0 && capability != 1 && capability != 50 && capability != 51)
+            assert_refused("march SPIR-V", "capability");
+        else
+            assert_int_equal(bound(), MASU_OK);
+    }
+}
+
 static void a_module_that_is_cut_anywhere_is_refused(void **state) {
     (void)state;
     support_blob_write(&blob, SUPPORT_ALL);
@@ -268,6 +282,7 @@ int main(void) {
         cmocka_unit_test(code_of_one_pass_as_that_of_another_is_refused),
         cmocka_unit_test(code_that_does_not_say_what_for_is_refused),
         cmocka_unit_test(what_no_pass_could_run_is_refused),
+        cmocka_unit_test(every_other_capability_is_refused),
         cmocka_unit_test(a_module_that_is_cut_anywhere_is_refused),
         cmocka_unit_test(what_a_module_asks_for_is_found),
         cmocka_unit_test(a_resource_that_the_pass_does_not_bind_is_refused),

@@ -322,6 +322,49 @@ static void limits_make_verdicts(void **state) {
                  masu_verdict_failed(MASU_VERDICT_UNSUPPORTED));
 }
 
+/* Every limit of every measure: its value passes, one step beyond it does not, and a suite whose
+ * warning is beyond its failure is rejected. */
+static void every_measure_has_a_right_and_a_wrong_side(void **state) {
+    (void)state;
+#define MEASURE_GROUP(name, key, group, more) group,
+    static const char *const groups[] = {MASU_MEASURES(MEASURE_GROUP)};
+#undef MEASURE_GROUP
+    for (int i = 0; i < 2 * MASU_MEASURE_COUNT; i++) {
+        const masu_measure m = (masu_measure)(i / 2);
+        const char *name = masu_measure_name(m), *group = groups[m];
+        const bool least = i % 2;
+        if (least && strcmp(group, "counts") != 0) continue;
+        const double more = least || !strcmp(name, "psnr") || !strcmp(name, "ssim") ? -1 : 1;
+        masu_case of = {.scene = "s"};
+        for (int k = 0; k < MASU_MEASURE_COUNT; k++)
+            of.bounds[k] = of.least[k] = (masu_bound){MASU_UNKNOWN, MASU_UNKNOWN};
+        *(least ? &of.least[m] : &of.bounds[m]) = (masu_bound){8, 8 + more};
+        static const masu_verdict verdicts[] = {MASU_VERDICT_PASS, MASU_VERDICT_WARNING, MASU_VERDICT_FAIL};
+        for (int step = -1; step <= 2; step++) {
+            masu_conform_result r;
+            masu_conform_not_run(&of, "", &r);
+            r.verdict = MASU_VERDICT_PASS;
+            r.values[m] = 8 + more * step;
+            masu_conform_judge(&r, true);
+            if (r.verdict != verdicts[step < 0 ? 0 : step])
+                fail_msg("%s %g with warn 8, fail %g: %s", name, r.values[m], 8 + more,
+                         masu_verdict_name(r.verdict));
+            assert_true(!r.why[0] == (step < 1));
+        }
+        for (int turned = 0; turned < 2; turned++) {
+            char text[200];
+            snprintf(text, sizeof text, "\"%s\": {%s\"%s\": {\"warn\": 8, \"fail\": %g}}",
+                     least ? "at_least" : group,
+                     !strcmp(group, "error") ? "\"against\": \"reference\", \"golden\": \"a.ref\", " : "",
+                     name, 8 + (turned ? -more : more));
+            bool right = parse_case(text);
+            if (right == turned && (right || strstr(error, "beyond fail")))
+                fail_msg("%s: %s", text, right ? "accepted" : error);
+            if (right) masu_suite_free(&suite);
+        }
+    }
+}
+
 /* ---- Selection ------------------------------------------------------------------------------- */
 
 static const char *five =
@@ -600,6 +643,7 @@ int main(void) {
         cmocka_unit_test(a_bad_case_is_named_with_its_key),
         cmocka_unit_test(a_suite_that_is_cut_is_refused),
         cmocka_unit_test(limits_make_verdicts),
+        cmocka_unit_test(every_measure_has_a_right_and_a_wrong_side),
         cmocka_unit_test(globs_and_fractions_choose),
         cmocka_unit_test(a_token_finds_its_case_and_no_other),
         cmocka_unit_test(names_are_escaped),

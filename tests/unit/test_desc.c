@@ -147,6 +147,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.mip_bias);
     SAME(deny.unified_memory);
     SAME(deny.unorm16);
+    SAME(deny.easu_twice);
     SAME(deny.image_size);
     SAME(deny.storage_buffers);
     SAME(deny.color_attachments);

@@ -160,6 +160,25 @@ static void sparse_accessors_change_some_elements(void **state) {
     vertex_at(0, 4, 0, 0);
 }
 
+/* The test above changes the last element; the one behind it would be a write beyond the array. */
+static void a_sparse_index_is_below_the_count(void **state) {
+    (void)state;
+    static const float to[3];
+    for (int integers = 0; integers < 2; integers++) {
+        const uint8_t changed = integers ? 6 : 4;
+        char sparse[256], why[80];
+        begin_quad();
+        snprintf(sparse, sizeof sparse,
+                 ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":%d,\"componentType\":5121},\"values\":{\"bufferView\":%d}}",
+                 view(&changed, 1, 0), view(to, sizeof to, 0));
+        int a = accessor(-1, integers ? UINT : FLOAT, integers ? "SCALAR" : "VEC3", changed, sparse);
+        snprintf(why, sizeof why, "\"sparse\" changes element %d of %d", changed, changed);
+        refused(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],\"nodes\":[{\"mesh\":0}]",
+                       integers ? quad_positions : a, integers ? a : quad_indices),
+                NULL, why);
+    }
+}
+
 static void morph_weights_of_the_node_rest(void **state) {
     (void)state;
     static const float up[12] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
@@ -1009,6 +1028,7 @@ int main(void) {
         cmocka_unit_test(quantized_positions_and_normals),
         cmocka_unit_test(indices_of_all_types_strips_and_fans),
         cmocka_unit_test(sparse_accessors_change_some_elements),
+        cmocka_unit_test(a_sparse_index_is_below_the_count),
         cmocka_unit_test(morph_weights_of_the_node_rest),
         cmocka_unit_test(morph_targets_are_kept_to_move),
         cmocka_unit_test(instances_of_a_node),

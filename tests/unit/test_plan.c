@@ -408,8 +408,11 @@ static void twice_the_size_has_a_pass_of_its_own(void **state) {
     d.debug.exact = 1;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
     assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE),
-                        "the output does not have twice the render size");
+                        "the output does not have twice the render size, or the device lacks registers");
     d.debug.exact = 0;
+    d.deny.easu_twice = 1;
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+    d.deny.easu_twice = 0;
     d.half_floats = MASU_ON;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
     d = source_desc(960, 541);
@@ -645,6 +648,18 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].count, 7);
     assert_int_equal(plan.buffers[MASU_BUFFER_FRAME].count, 4);
     assert_int_equal(plan.buffers[MASU_BUFFER_INSTANCES].count, 6);
+    support_scene.sdf_static = 1;
+    (void)snprintf(expected, sizeof expected,
+                   "%s" MARCH_ON_RASTER "static_velocity(r:depth r:scene_depth u:velocity) " LIGHT_SDF
+                   "readback(from:velocity) " TONEMAP,
+                   gbuffer);
+    assert_frame(&d, 0, expected);
+    d = scene_desc(SDF, 64, 64);
+    support_scene.sdf_static = 1;
+    d.readback = MASU_READBACK_VELOCITY;
+    assert_frame(&d, 0,
+                 MARCH_ALONE LIGHT_SDF "static_velocity_alone(r:scene_depth w:velocity) "
+                 "readback(from:velocity) " TONEMAP);
     d = scene_desc(SDF, 64, 64);
     support_scene.sdf_dynamic = 1;
     d.readback = MASU_READBACK_VELOCITY;

@@ -113,7 +113,7 @@ static const struct {
              {MASU_BLOB_CLASSIFY_SPIRV, "classify SPIR-V", 1},
              {MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V", 1},
              {MASU_BLOB_CONE4_SPIRV, "cone4 SPIR-V", 1},
-             {MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V", 1},
+             {MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V", 0},
              {MASU_BLOB_SILHOUETTES_SPIRV, "silhouettes SPIR-V", 1},
              {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V", 1},
              {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 1}, /* in addition to the one before */
@@ -945,11 +945,27 @@ static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
         support_accepted(&blob, &scene);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_anchored, 1);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_dynamic, !constant);
-        assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, !constant);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, 1);
         AT(SDF, masu_blob_sdf)->flags |= MASU_SDF_TIMELESS;
         support_blob_seal(blob.bytes, blob.size);
         support_accepted(&blob, &scene);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, 0);
+    }
+    for (uint32_t timeless = 0; timeless < 2; timeless++) { /* a hand-written field has no such code */
+        masu_scene scene;
+        support_blob_write(&blob, SUPPORT_ALL);
+        AT(SDF, masu_blob_sdf)->flags = timeless ? MASU_SDF_TIMELESS : 0;
+        support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
+        support_blob_drop(&blob, MASU_BLOB_UPDATE_SPIRV);
+        support_blob_recode(&blob);
+        support_blob_seal(blob.bytes, blob.size);
+        support_accepted(&blob, &scene);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, !timeless);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_static, 0);
+        support_blob_drop(&blob, MASU_BLOB_VELOCITY_SPIRV);
+        support_blob_seal(blob.bytes, blob.size);
+        support_accepted(&blob, &scene);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_static, 1);
     }
     REFUSED("update SPIR-V", 0, {
         AT(SDF, masu_blob_sdf)->flags = MASU_SDF_ANCHORED;

@@ -352,6 +352,47 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
 /* ---- Times ----------------------------------------------------------------------------------- */
 
 /* A counter of few bits, from just below its maximum to just beyond. */
+/* Whether the last of 40 frames looks for changes, each `step` seconds after the previous one. Nothing
+ * else changes: it has been at rest for longer than changes are looked for. */
+static int looks_for_changes(uint32_t parts, double step) {
+    masu_rung rung = {.scale = 0.5f, .temporal = MASU_ON, .lod_error = -1.0f};
+    make_renderer_with(parts, 0, &rung, 1);
+    masu_camera camera = {.position = {0, 1, 5}, .forward = {0, 0, -1}, .fov_y = 1, .near_distance = 0.1f};
+    for (uint32_t n = 0; n < 40; n++) {
+        masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .time = 1 + n * step};
+        (void)write_good(&f, n % 2);
+        m.timeline.frame++;
+    }
+    return (uniforms(1).temporal[2] & MASU_TEMPORAL_CHANGES) != 0;
+}
+
+/* An SDF that only time changes: no transform, parameter or light tells of it. */
+static void temporal_upscaling_is_told_of_an_sdf_that_time_changes(void **state) {
+    (void)state;
+    assert_false(looks_for_changes(SUPPORT_SDF, 0));
+    assert_true(looks_for_changes(SUPPORT_SDF, 0.02));
+    assert_false(looks_for_changes(SUPPORT_RASTER, 0.02));
+}
+
+/* The instances of the mesh with a LOD are in several views: the LOD does not depend on the view. */
+static void an_lod_is_chosen_once_for_all_views(void **state) {
+    (void)state;
+    masu_rung rung = {.scale = 1.0f, .lod_error = 1.0f};
+    make_renderer_with(SUPPORT_RASTER | SUPPORT_SHADOW | SUPPORT_DETAIL, 0, &rung, 1);
+    masu_camera camera = {.position = {0, 1, 5}, .forward = {0, 0, -1}, .fov_y = 1, .near_distance = 0.1f};
+    masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera};
+    (void)write_good(&f, 0);
+    uint32_t instances = 0, listed = 0;
+    for (uint32_t b = 0; b < m.draws.batch_count; b++) {
+        if (m.draws.batches[b].lod_count) instances += m.draws.batches[b].instance_count;
+    }
+    for (uint32_t view = 0; view < m.plan.views; view++)
+        listed += m.visible.slot_views[0][view].instances;
+    print_message("  %u instances with LODs, %u in lists\n", instances, listed);
+    assert_true(m.plan.views > 1 && instances && listed > m.plan.scene.instances);
+    assert_int_equal(m.visible.levels_chosen, instances);
+}
+
 static void times_of_a_clock_that_wraps_are_right(void **state) {
     (void)state;
     masu_commands commands;
@@ -396,6 +437,8 @@ int main(void) {
         cmocka_unit_test(instances_are_found_by_name),
         cmocka_unit_test(a_moved_instance_reaches_every_slot_once),
         cmocka_unit_test(a_moved_instance_reaches_as_many_slots_as_there_are),
+        cmocka_unit_test(temporal_upscaling_is_told_of_an_sdf_that_time_changes),
+        cmocka_unit_test(an_lod_is_chosen_once_for_all_views),
         cmocka_unit_test(times_of_a_clock_that_wraps_are_right),
         cmocka_unit_test(moving_twice_before_a_frame_keeps_the_last),
         cmocka_unit_test(a_bad_instance_or_transform_is_refused),

@@ -1,9 +1,10 @@
-/* report.c: see report.h. The page is XHTML, so that a program can validate it. */
+/* report.c: see report.h. page.c: what its page shares with the index. */
 #include "bench/report.h"
 
 #include "settings/ladder.h"
 #include "bench/costs.h"
 #include "bench/machine.h"
+#include "bench/page.h"
 #include "measure/picture.h"
 #include "bench/plot.h"
 #include "bench/sweep.h"
@@ -33,6 +34,7 @@ typedef struct report {
     double steps[MASU_MAX_RUNGS];
     VkExtent2D size;
     FILE *page;
+    size_t image_bytes; /* at most, of each image in the page */
     char *error;
     size_t error_size;
 } report;
@@ -232,33 +234,29 @@ static bool write_ladder(report *r) {
 
 /* ---- The page -------------------------------------------------------------------------------- */
 
-static void put_base64(FILE *f, const uint8_t *bytes, size_t count) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < count; i += 3) {
-        uint32_t left = count - i < 3 ? (uint32_t)(count - i) : 3, v = 0;
-        for (uint32_t k = 0; k < 3; k++) v = v << 8 | (k < left ? bytes[i + k] : 0);
-        for (uint32_t k = 0; k < 4; k++) fputc(k <= left ? digits[v >> (18 - 6 * k) & 63] : '=', f);
-    }
-}
-
-static bool put_image(report *r, const char *path, const char *type, const char *text) {
+static bool put_plot(report *r, const char *path, const char *text) {
     uint8_t *bytes = NULL;
     size_t count = 0;
     if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, r->error, r->error_size))
         return false;
-    masu_markup(r->page, "<img alt=\"%s\" src=\"data:%s;base64,", text, type);
-    put_base64(r->page, bytes, count);
-    masu_markup(r->page, "\"/>");
+    masu_markup(r->page, "<p class=\"wide\"><img class=\"plot\" alt=\"%s\" "
+                         "src=\"data:image/svg+xml;base64,", text);
+    masu_page_base64(r->page, bytes, count);
+    fputs("\"/></p>\n", r->page);
     free(bytes);
     return true;
 }
 
-/* Black, violet, red, orange, white, by the square root, since most errors are below 0.1. 33 steps
- * reduce the size of a PNG to a third. */
+static bool put_image(report *r, const uint8_t *rgba, const char *kind, const char *text) {
+    return masu_page_image(r->page, rgba, r->size.width, r->size.height, r->image_bytes, kind, text) ||
+           failed(r, "out of memory");
+}
+
+/* Black, violet, red, orange, white, by the square root, since most errors are below 0.1. */
 static void heat(float value, uint8_t rgba[4]) {
     static const float ramp[5][3] = {
         {0, 0, 0}, {70, 20, 120}, {190, 45, 90}, {250, 150, 40}, {255, 250, 220}};
-    float at = 0.125f * roundf(32.0f * sqrtf(fminf(fmaxf(value, 0.0f), 1.0f)));
+    float at = 4.0f * sqrtf(fminf(fmaxf(value, 0.0f), 1.0f));
     int low = at < 3.0f ? (int)at : 3;
     for (int k = 0; k < 3; k++) {
         float mixed = ramp[low][k] + (at - (float)low) * (ramp[low + 1][k] - ramp[low][k]);
@@ -267,45 +265,24 @@ static void heat(float value, uint8_t rgba[4]) {
     rgba[3] = 255;
 }
 
-/* Writes the FLIP map of a setting next to its image. */
-static bool make_map(report *r, const char *setting, char path[4096]) {
-    size_t pixels = (size_t)r->size.width * r->size.height;
-    uint8_t *truth = malloc(4 * pixels), *shown = malloc(4 * pixels);
-    float *map = malloc(sizeof *map * pixels);
+/* Image and FLIP map of a rung. */
+static bool put_rung(report *r, uint32_t rung, const uint8_t *truth, uint8_t *shown, float *map) {
+    const char *setting = r->rows[r->rungs[rung]].setting;
+    const size_t pixels = (size_t)r->size.width * r->size.height;
+    char path[4096], text[MASU_SETTING_ID + 32];
     masu_flip flip;
-    bool good = (truth && shown && map) || failed(r, "out of memory");
-    good = good && masu_sweep_path(r->folder, "truth.png", path) &&
-           masu_picture_load(path, r->size, truth, r->error, r->error_size) &&
-           masu_sweep_picture(r->folder, setting, "", path) &&
-           masu_picture_load(path, r->size, shown, r->error, r->error_size);
-    good = good && (masu_metric_flip(truth, shown, r->size.width, r->size.height, 0, map, &flip) ||
-                    failed(r, "out of memory"));
-    for (size_t i = 0; i < pixels && good; i++) heat(map[i], shown + 4 * i);
-    good =
-        good && masu_sweep_picture(r->folder, setting, ".flip", path) &&
-        masu_image_save_png(path, shown, r->size.width, r->size.height, 0, r->error, r->error_size);
-    free(truth);
-    free(shown);
-    free(map);
-    return good;
+    snprintf(text, sizeof text, "rung %u: %s", rung, setting);
+    if (!masu_sweep_picture(r->folder, setting, "", path))
+        return failed(r, "the path is too long");
+    if (!masu_picture_load(path, r->size, shown, r->error, r->error_size) ||
+        !put_image(r, shown, "shot", text))
+        return false;
+    if (!masu_metric_flip(truth, shown, r->size.width, r->size.height, 0, map, &flip))
+        return failed(r, "out of memory");
+    for (size_t i = 0; i < pixels; i++) heat(map[i], shown + 4 * i);
+    snprintf(text, sizeof text, "map of FLIP of rung %u", rung);
+    return put_image(r, shown, "map", text);
 }
-
-static const char head[] =
-    "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n"
-    "<meta charset=\"utf-8\"/>\n"
-    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<style>\n"
-    "body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em;\n"
-    "       color: #222; background: #fff; }\n"
-    "table { border-collapse: collapse; font-size: 12px; }\n"
-    ".wide { overflow-x: auto; }\n"
-    "th, td { padding: 2px 6px; text-align: right; border-bottom: 1px solid #ddd;\n"
-    "         white-space: nowrap; }\n"
-    "th { border-bottom: 2px solid #888; }\n"
-    "td:first-child, th:first-child { text-align: left; }\n"
-    "img { max-width: 100%; }\n"
-    ".pair img { width: 49%; image-rendering: pixelated; }\n"
-    ".rung td { background: #fff3e6; }\n"
-    "</style>\n<title>masu bench: ";
 
 /* Machine and date: one line for each run that added rows. */
 static void put_machines(report *r) {
@@ -378,12 +355,13 @@ static void put_note(report *r) {
 static void put_head(report *r) {
     FILE *f = r->page;
     const char *scene = text_of(r->sweep, "scene");
-    fputs(head, f);
-    masu_markup(f, "%s</title>\n</head>\n<body>\n<h1>Error against run time: %s</h1>\n", scene, scene);
+    const masu_row *rungs[MASU_MAX_RUNGS];
+    for (uint32_t i = 0; i < r->rung_count; i++) rungs[i] = &r->rows[r->rungs[i]];
+    masu_page_begin(f, "Error against run time: ", scene);
+    masu_page_verdict(f, rungs, r->rung_count);
     masu_markup(f, "<p>%ux%u at %.6g s; %s; scene %s.</p>\n", r->size.width, r->size.height,
                 number_of(r, "time"), text_of(r->sweep, "driver"), text_of(r->sweep, "hash"));
     put_machines(r);
-    put_note(r);
     if (r->out->rows < r->out->settings)
         masu_markup(f, "<p><b>%u of %u settings are measured.</b></p>\n", r->out->rows,
                 r->out->settings);
@@ -478,7 +456,7 @@ static void put_ladder(report *r) {
     fputs(
         "<h2>The ladder</h2>\n<p>Rungs from the Pareto front in falling quality; neighbours "
         "differ in time by at least 4 %, and with a stationary camera by at most 3 of 255 on average. "
-        "ladder.json has all their knobs; the table of all settings has all columns.</p>\n<div class=\"wide\"><table>\n",
+        "ladder.json has all their knobs; the table of all settings has all columns.</p>\n<div class=\"wide\"><table class=\"sort\">\n",
         f);
     put_columns(f, true);
     for (uint32_t i = 0; i < r->rung_count; i++) {
@@ -494,12 +472,8 @@ static bool put_plots(report *r) {
                                            {"plots/techniques.svg", "effect of each technique"}};
     char path[4096];
     for (size_t i = 0; i < 2 && r->out->plots; i++) {
-        fputs("<p>", r->page);
-        if (!masu_sweep_path(r->folder, names[i][0], path) ||
-            !put_image(r, path, "image/svg+xml", names[i][1])) {
+        if (!masu_sweep_path(r->folder, names[i][0], path) || !put_plot(r, path, names[i][1]))
             return false;
-        }
-        fputs("</p>\n", r->page);
     }
     return true;
 }
@@ -510,7 +484,7 @@ static void put_techniques(report *r) {
     fputs(
         "<h2>Techniques</h2>\n<p>Every technique compared with the setting without it: the ratio of their "
         "times, and the change in error (FLIP), RMSE and device memory.</p>\n"
-        "<div class=\"wide\"><table>\n<tr><th>technique</th><th>from</th><th>time</th><th>error</th>"
+        "<div class=\"wide\"><table class=\"sort\">\n<tr><th>technique</th><th>from</th><th>time</th><th>error</th>"
         "<th>RMSE</th><th>KiB</th></tr>\n",
         f);
     for (uint32_t i = 0; i < r->count; i++) {
@@ -534,10 +508,10 @@ static bool is_rung(const report *r, uint32_t row) {
 static void put_all(report *r) {
     json_t *one;
     size_t k;
-    fputs("<h2>All settings</h2>\n<div class=\"wide\"><table>\n", r->page);
+    fputs("<h2>All settings</h2>\n<div class=\"wide\"><table class=\"sort\">\n", r->page);
     put_columns(r->page, false);
     for (uint32_t i = 0; i < r->count; i++) put_row(r, i, "", false, is_rung(r, i));
-    fputs("</table></div>\n<h2>Skipped settings</h2>\n<div class=\"wide\"><table>\n"
+    fputs("</table></div>\n<h2>Skipped settings</h2>\n<div class=\"wide\"><table class=\"sort\">\n"
           "<tr><th>setting</th><th>reason</th></tr>\n",
           r->page);
     json_array_foreach(json_object_get(r->sweep, "dropped"), k, one) {
@@ -547,48 +521,75 @@ static void put_all(report *r) {
 }
 
 static bool put_pictures(report *r) {
+    const size_t pixels = (size_t)r->size.width * r->size.height;
+    uint8_t *truth = malloc(4 * pixels), *shown = malloc(4 * pixels);
+    float *map = malloc(sizeof *map * pixels);
     char path[4096];
-    fputs("<h2>Images</h2>\n<h3>Ground truth</h3>\n<p class=\"pair\">", r->page);
-    if (!masu_sweep_path(r->folder, "truth.png", path) ||
-        !put_image(r, path, "image/png", "ground truth"))
-        return false;
+    fputs("<h2>Images</h2>\n<p>JPEG; pictures/ has the images without loss.</p>\n"
+          "<h3>Ground truth</h3>\n<p class=\"pair\">",
+          r->page);
+    bool good = (truth && shown && map) || failed(r, "out of memory");
+    good = good && masu_sweep_path(r->folder, "truth.png", path) &&
+           masu_picture_load(path, r->size, truth, r->error, r->error_size) &&
+           put_image(r, truth, "shot", "ground truth");
     fputs("</p>\n", r->page);
-    for (uint32_t i = 0; i < r->rung_count; i++) {
+    for (uint32_t i = 0; i < r->rung_count && good; i++) {
         const masu_row *row = &r->rows[r->rungs[i]];
         masu_markup(r->page, "<h3>Rung %u: %s", i, row->setting);
         masu_markup(r->page,
-                "</h3>\n<p>%.3f of the base's time, FLIP %.4f; on the right the map of FLIP: "
+                "</h3>\n<p>%.3f of the base's time, FLIP %.4f; beside it the map of FLIP: "
                 "violet 0.06, red 0.25, orange 0.56, white 1."
                 "</p>\n<p class=\"pair\">",
                 r->ratios[r->rungs[i]], row->flip);
-        if (!masu_sweep_picture(r->folder, row->setting, "", path) ||
-            !put_image(r, path, "image/png", row->setting) || !make_map(r, row->setting, path) ||
-            !put_image(r, path, "image/png", "map of FLIP")) {
-            return false;
-        }
+        good = put_rung(r, i, truth, shown, map);
         fputs("</p>\n", r->page);
     }
-    return true;
+    free(truth);
+    free(shown);
+    free(map);
+    return good;
 }
 
-static bool write_page(report *r) {
-    char path[4096], *text = NULL;
-    size_t bytes = 0;
-    r->page = open_memstream(&text, &bytes);
-    if (!r->page || !masu_sweep_path(r->folder, "index.html", path))
-        return failed(r, "out of memory");
+/* The page with images of at most r->image_bytes each; free() it. NULL: r->error says why. */
+static char *make_page(report *r, size_t *bytes) {
+    char *text = NULL;
+    *bytes = 0;
+    r->page = open_memstream(&text, bytes);
+    if (!r->page) {
+        failed(r, "out of memory");
+        return NULL;
+    }
     put_head(r);
+    masu_page_slider(r->page);
     put_ladder(r);
     bool good = put_plots(r);
     put_techniques(r);
     good = good && put_pictures(r);
     put_all(r);
-    fputs("</body>\n</html>\n", r->page);
-    bool whole = !fclose(r->page);
-    if (good && !whole) good = failed(r, "out of memory");
-    good = good && masu_file_write(path, text, bytes, r->error, r->error_size);
+    fputs("<h2>Explanations</h2>\n", r->page);
+    put_note(r);
+    masu_page_end(r->page);
+    if (fclose(r->page) && good) good = failed(r, "out of memory");
+    if (good) return text;
     free(text);
-    return good;
+    return NULL;
+}
+
+/* Three quarters of the page are for images at first. More text or larger plots halve the images. */
+static bool write_page(report *r) {
+    char path[4096];
+    if (!masu_sweep_path(r->folder, "index.html", path)) return failed(r, "the path is too long");
+    r->image_bytes = MASU_PAGE_BYTES * 9 / 16 / (1 + 2 * r->rung_count); /* base64: 3/4 of them */
+    for (; r->image_bytes >= 1024; r->image_bytes /= 2) {
+        size_t bytes;
+        char *text = make_page(r, &bytes);
+        if (!text) return false;
+        const bool fits = bytes <= MASU_PAGE_BYTES;
+        const bool good = fits && masu_file_write(path, text, bytes, r->error, r->error_size);
+        free(text);
+        if (fits) return good;
+    }
+    return failed(r, "the text of the page exceeds its limit of 1500000 bytes");
 }
 
 static void release(report *r) {

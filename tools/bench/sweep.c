@@ -357,9 +357,9 @@ static bool draw_batch(sweep *w, batch *b) {
     return true;
 }
 
-/* The noise of reflections and the jitter of rung.temporal depend on the frame number. So each image
- * gets a separate renderer: settings then differ only by their knobs, and a row does not depend on
- * its batch, shard or resumed run. */
+/* The noise of reflections and the jitter of rung.temporal depend on the frame number. So each
+ * image gets a separate renderer: settings then differ only by their knobs, and a row does not
+ * depend on its batch, shard or resumed run. */
 static bool draw_alone(sweep *w, batch *b) {
     for (uint32_t k = b->base_too ? 0 : 1; k < b->count; k++) {
         const batch one = {.of = {b->of[k]}, .count = 1};

@@ -128,7 +128,7 @@ static void print_limits(FILE *f, const masu_case *c) {
     static const char *const same[] = MASU_SAME_NAMES;
     for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
         const char *name = masu_measure_name((masu_measure)m);
-        bool more = m == MASU_MEASURE_PSNR || m == MASU_MEASURE_SSIM;
+        bool more = masu_measure_more((masu_measure)m);
         if (masu_bound_is_set(&c->bounds[m])) {
             double limit = limit_of(&c->bounds[m]);
             if (!limit && !more) /* 0 cannot be undercut: print equality */

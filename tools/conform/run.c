@@ -43,7 +43,7 @@ static void note(masu_conform_result *r, const char *text) {
 
 static void judge(masu_conform_result *r, masu_measure m, bool least) {
     const masu_bound *bound = least ? &r->of->least[m] : &r->of->bounds[m];
-    bool more = least || m == MASU_MEASURE_PSNR || m == MASU_MEASURE_SSIM;
+    bool more = least || masu_measure_more(m);
     masu_verdict verdict = masu_bound_judge(bound, r->values[m], more);
     if (verdict == MASU_VERDICT_PASS) return;
     double limit = verdict == MASU_VERDICT_FAIL ? bound->fail : bound->warn;
@@ -56,7 +56,7 @@ static void judge(masu_conform_result *r, masu_measure m, bool least) {
          more ? "least" : "most", limit);
 }
 
-static void judge_all(masu_conform_result *r, bool validated) {
+void masu_conform_judge(masu_conform_result *r, bool validated) {
     for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
         bool blind = isnan(r->values[m]) &&
                      ((m == MASU_MEASURE_ALLOCATIONS && (validated || !masu_alloc_counting())) ||
@@ -634,7 +634,7 @@ static void run(masu_conform *c, const masu_case *of, masu_conform_result *r) {
         if (truth) masu_golden_compare(truth, picture, of, r->values);
     }
     free(picture);
-    judge_all(r, validated);
+    masu_conform_judge(r, validated);
 }
 
 void masu_conform_not_run(const masu_case *of, const char *why, masu_conform_result *out) {

@@ -42,6 +42,8 @@ bool masu_measure_counted(masu_measure measure) {
     return !strcmp(measures[measure].group, "counts");
 }
 
+bool masu_measure_more(masu_measure measure) { return measures[measure].more_is_better; }
+
 bool masu_bound_is_set(const masu_bound *bound) {
     return !isnan(bound->warn) || !isnan(bound->fail);
 }

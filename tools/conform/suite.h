@@ -86,6 +86,7 @@ typedef enum masu_measure {
 
 const char *masu_measure_name(masu_measure measure);
 bool masu_measure_counted(masu_measure measure); /* is in the group `counts` */
+bool masu_measure_more(masu_measure measure);    /* more is better: its limits are lower limits */
 
 /* Not measured, or no limit. A double, because NAN is a float. */
 #define MASU_UNKNOWN ((double)NAN)

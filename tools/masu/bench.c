@@ -5,6 +5,7 @@
 
 #include "bench/against.h"
 #include "bench/golden.h"
+#include "bench/index.h"
 #include "measure/picture.h"
 #include "bench/report.h"
 #include "bench/sweep.h"
@@ -22,7 +23,7 @@ typedef struct options {
     masu_truth_options truth;
     masu_setting_list only;
     masu_given given;
-    const char *against, *rungs_of, *csv, *golden;
+    const char *against, *rungs_of, *csv, *golden, *index;
     bool merge, ladder, steady; /* --steady is given */
 } options;
 
@@ -46,6 +47,14 @@ static int report(const options *o) {
            : result.by_timestamps ? "timestamps"
                                   : "the wall clock",
            o->sweep.folder);
+    return MASU_CLI_OK;
+}
+
+static int write_index(const char *folder) {
+    char error[4096];
+    uint32_t count;
+    if (!masu_bench_index(folder, &count, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!masu_cli_quiet()) printf("%s/index.html: %u scenes\n", folder, count);
     return MASU_CLI_OK;
 }
 
@@ -188,6 +197,8 @@ static const masu_option rows[] = {
               "compare every rung of DIR with the same setting in DIR2: difference of\n"
               "error and of time ratio, and the largest differences"),
     MASU_OUTPUT(options, csv, "csv", "FILE", "with --against: write CSV there; '-' is stdout"),
+    MASU_TEXT(options, index, "index", "DIR",
+              "write DIR/index.html: verdict and link of every result folder in DIR"),
     MASU_FLAG(options, ladder, "ladder", "print the measured ladders LADDER.json..."),
     MASU_HEADING("Device"),
     MASU_DEVICE_ROWS(options, sweep.host),
@@ -212,6 +223,8 @@ static int check(const options *o) {
     if (o->golden && (apart || o->ladder || o->sweep.shards > 1))
         return masu_cli_usage_error(
             "--golden cannot be combined with --shard, --merge, --against or --ladder");
+    if (o->index && (apart || o->ladder || o->rungs_of || o->golden || o->sweep.folder || o->given.count))
+        return masu_cli_usage_error("--index cannot be combined with scenes, folders or other modes");
     if (o->csv && !o->against) return masu_cli_usage_error("--csv needs --against");
     return MASU_CLI_OK;
 }
@@ -229,6 +242,7 @@ static int run(masu_cli *cli) {
     o.sweep.rays = o.truth.rays;
     code = check(&o);
     if (code) return code;
+    if (o.index) return write_index(o.index);
     if (o.ladder) return masu_bench_ladder(&o.given);
     if (o.against) return against(&o);
     if (!o.given.count)
@@ -253,6 +267,7 @@ const masu_cli_command masu_cmd_bench = {
     .arguments = "SCENE.masu --out DIR [options]\n"
                  "       masu bench --merge DIR... --out DIR\n"
                  "       masu bench DIR --against DIR2\n"
+                 "       masu bench --index DIR\n"
                  "       masu bench --ladder LADDER.json...",
     .summary = "measure error and time of every quality setting, and build a quality ladder",
     .details =

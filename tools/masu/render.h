@@ -47,7 +47,8 @@ bool masu_render_read_scene(masu_render_options *o, char *error, size_t size);
 /* Plays a clip on every model that has clips. */
 bool masu_render_animate(masu_session *s, const masu_render_options *o, double time, char *error, size_t size);
 
-/* render_post.c: the effects on the image, and the colour table's file. On false `error` is one line. */
+/* render_post.c: the effects on the image, and the colour table's file. On false `error` is one
+ * line. */
 bool masu_render_read_post(masu_render_options *o, char *error, size_t size);
 bool masu_render_set_lut(masu_session *s, const masu_render_options *o, char *error, size_t size);
 

@@ -1,16 +1,17 @@
 /* analyse.c: what is known of a field before it is ever evaluated (sdfc_facts): its Lipschitz
  * constant, where the solid can be, and how fast the field grows outside of that. Every operator
- * has a rule; what a rule needs and cannot have (a twist of something endless, a repeated shape that
- * sticks out of its cell) is an error at the operator.
+ * has a rule; what a rule needs and cannot have (a twist of something endless, a repeated shape
+ * that sticks out of its cell) is an error at the operator.
  *
- * `growth` is what makes the rest sound: a field that is only a lower bound of the distance may stay
- * small far away, so "f <= r", what round(r) makes solid, may reach further than r. With
- * f >= growth * distance(box), r / growth is far enough.
+ * `growth` is what makes the rest sound: a field that is only a lower bound of the distance may
+ * stay small far away, so "f <= r", what round(r) makes solid, may reach further than r. With f >=
+ * growth * distance(box), r / growth is far enough.
  *
- * Rules are in analyse_primitive.c and analyse_operator.c; here they are applied, and their limits kept.
+ * Rules are in analyse_primitive.c and analyse_operator.c; here they are applied, and their limits
+ * kept.
  *
- * Operators that need derived numbers (the rotation's matrix, 1 / scale) replace their arguments by
- * those, as expressions, so that constants fold and the rest is computed once per frame. */
+ * Operators that need derived numbers (the rotation's matrix, 1 / scale) replace their arguments
+ * by those, as expressions, so that constants fold and the rest is computed once per frame. */
 #include "sdfc/facts.h"
 
 void sdfc_analyse(sdfc *c, int shape) {

@@ -27,7 +27,8 @@ static double lowered(int n) {
     return y;
 }
 
-/* Widths by which n equal operands are lowered: halfway to the next again and again, or of a blend. */
+/* Widths by which n equal operands are lowered: halfway to the next again and again, or of a
+ * blend. */
 static double lowered_by(int kind, int n) {
     switch (kind) {
     case SDFC_KIND_SMOOTH_UNION: return lowered(n);

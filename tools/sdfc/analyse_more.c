@@ -1,4 +1,5 @@
-/* analyse_more.c: the facts of the solids of library_shapes.inc and library_fractals.inc; see analyse.c. */
+/* analyse_more.c: the facts of the solids of library_shapes.inc and library_fractals.inc; see
+ * analyse.c. */
 #include "sdfc/facts.h"
 
 #include <string.h>

@@ -527,8 +527,8 @@ static void elongate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     f->radius += sdfc_norm3(by);
 }
 
-/* Of the section at z = 0, which is the shape itself if it is flat. What is less steep than 1 would have caps that
- * are too steep for it. */
+/* Of the section at z = 0, which is the shape itself if it is flat. What is less steep than 1
+ * would have caps that are too steep for it. */
 static void extrude_facts(const sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     double h = sdfc_size_of(c, s->number[0]);
     f->box.low[2] = -h;

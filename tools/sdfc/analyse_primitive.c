@@ -83,9 +83,9 @@ static sdfc_facts user_facts(sdfc *c, const sdfc_shape *s) {
 /* The escape-time estimate is no bound. Measured on 1e5 pairs of a point outside and one of the
  * surface, powers 2 to 16, 2 to 14 levels: divided by 2 it exceeds the distance for 1 of 10,000.
  *
- * Of one or two levels it is half the distance at the surface and at most 0.65 of it further off (of 3.6 million pairs of
- * power 8; 0.74 of 600,000 of other powers, but for one pair of power 6 at 1.11): there lowering takes 1.3 times the estimate, and
- * the constant is 1. */
+ * Of one or two levels it is half the distance at the surface and at most 0.65 of it further off
+ * (of 3.6 million pairs of power 8; 0.74 of 600,000 of other powers, but for one pair of power 6
+ * at 1.11): there lowering takes 1.3 times the estimate, and the constant is 1. */
 #define MANDELBULB_LIPSCHITZ 2.0
 
 static sdfc_facts mandelbulb_facts(sdfc *c, const sdfc_shape *s) {

@@ -1,12 +1,13 @@
-/* box.c: the box around all listed parts at the present parameters and time. sdfc_facts knows a
- * box for all of their values at once, which is too wide to be worth a clipped ray: of a ball of
- * radius r that stands on the ground, with r from 0.2 to 1.4, it reaches from -1.2 to 2.8, and the
- * ball from 0 to 2 r.
+/* box.c: the box around all listed parts at the present parameters and time. sdfc_facts knows a box
+ * for all of their values at once, which is too wide to be worth a clipped ray: of a ball of radius
+ * r that stands on the ground, with r from 0.2 to 1.4, it reaches from -1.2 to 2.8, and the ball
+ * from 0 to 2 r.
  *
- * So the bounds are followed as expressions where that is exact, through movements and repetitions
- * down to balls and boxes. All else has the constant bound that the analysis found, and so has a
- * scene of too many parts to have bits for them: their expressions would be the most of the update's
- * code. Only what changes becomes a slot; the update writes it once per frame. */
+ * So the bounds are followed as expressions where that is exact, through movements and
+ * repetitions down to balls and boxes. All else has the constant bound that the analysis found,
+ * and so has a scene of too many parts to have bits for them: their expressions would be the
+ * most of the update's code. Only what changes becomes a slot; the update writes it once per
+ * frame. */
 #include "sdfc/internal.h"
 
 /* One side of a box along one axis. */

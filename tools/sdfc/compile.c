@@ -74,7 +74,8 @@ void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     }
 }
 
-/* Expressions of time or parameters may have any value; what a surface knows of itself is within its interval. */
+/* Expressions of time or parameters may have any value; what a surface knows of itself is within
+ * its interval. */
 static double roughness_of(const sdfc *c, int material) {
     const sdfc_expr *e = &c->exprs[c->materials[material].value[3]];
     return e->op == SDFC_CONST || (e->local && !e->timed) ? fmax(e->low, 0) : 0;
@@ -115,7 +116,6 @@ static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->block_words = sdfc_block_words(c);
     out->glossiest = least_roughness(c);
     out->timeless = c->time_expr < 0;
-    for (int i = 0; i < c->part_count; i++) out->timeless = out->timeless && !out->parts[i].user; /* masu_time() */
     out->anchored = c->place_count > 0;
     for (int i = 0; i < c->dynamic_count; i++) {
         const sdfc_expr *e = &c->exprs[c->dynamic_slots[2 * i + 1]];

@@ -1,5 +1,6 @@
-/* define.c: names that stand for more than they say: def with arguments, whose body is read anew at each
- * call, what a material knows of the place where it is asked, and the cells of a repetition. */
+/* define.c: names that stand for more than they say: def with arguments, whose body is read anew
+ * at each call, what a material knows of the place where it is asked, and the cells of a
+ * repetition. */
 #include "sdfc/internal.h"
 
 #include <string.h>

@@ -1,5 +1,6 @@
-/* emit_glsl.c: the scene's field as GLSL: its parts by number, the nearest of them in any order or in
- * rising order, half-spaces in closed form, surfaces, root transforms, the update; see emit.h. */
+/* emit_glsl.c: the scene's field as GLSL: its parts by number, the nearest of them in any order
+ * or in rising order, half-spaces in closed form, surfaces, root transforms, the update; see
+ * emit.h. */
 #include "sdfc/emit.h"
 
 static bool any_timed(const sdfc *c) {
@@ -20,10 +21,12 @@ static void put_terms_on(sdfc_writer *w, const sdfc_group *group, bool several) 
         PUT(w, "masu_term_bits(%d) >> %uu", group->first_term / 32, (unsigned)group->first_term % 32);
 }
 
-/* The last place where the arguments of a part of group g may begin: where they do begin comes from data. */
+/* The last place where the arguments of a part of group g may begin: where they do begin comes
+ * from data. */
 static uint32_t last_base(const sdfc *c, int g) { return c->slot_count - (uint32_t)c->groups[g].slot_count; }
 
-/* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has several. */
+/* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has
+ * several. */
 static void put_part_value(sdfc_writer *w, int g, const char *name, const char *point) {
     const sdfc *c = w->c;
     const sdfc_group *group = &c->groups[g];
@@ -184,8 +187,8 @@ static bool is_estimate(const sdfc *c, const sdfc_group *group) {
     return c->shapes[c->parts[group->first_part].shape].facts.estimate;
 }
 
-/* Of a scene of few parts: the bits of the part in work that matter in the ball. What only estimates its
- * distance may everywhere that its sphere may. */
+/* Of a scene of few parts: the bits of the part in work that matter in the ball. What only
+ * estimates its distance may everywhere that its sphere may. */
 static void put_keep(sdfc_writer *w, const sdfc_group *group) {
     bool several = group->part_count > 1;
     if (is_estimate(w->c, group))
@@ -239,8 +242,9 @@ static void put_any_order(sdfc_writer *w) {
     PUT(w, "    return d;\n}\n");
 }
 
-/* A part alone of its form. Wrong turn, once tiles alone chose parts: one question for all parts that share a
- * place, so that an angle which they have in common is computed once. Blocks of pixels choose one of them. */
+/* A part alone of its form. Wrong turn, once tiles alone chose parts: one question for all parts
+ * that share a place, so that an angle which they have in common is computed once. Blocks of
+ * pixels choose one of them. */
 static void put_only_part(sdfc_writer *w, int g) {
     const sdfc_group *group = &w->c->groups[g];
     bool alone = w->c->part_count - w->c->flat_parts == 1;
@@ -257,9 +261,9 @@ static void put_only_part(sdfc_writer *w, int g) {
     PUT(w, "    }\n");
 }
 
-/* The parts of a form of several are found bit by bit. Wrong turn: lists of numbers in memory for a few
- * parts as well. On lavapipe each lane fetches by itself, which cost more than the parts' own
- * arithmetic. */
+/* The parts of a form of several are found bit by bit. Wrong turn: lists of numbers in memory
+ * for a few parts as well. On lavapipe each lane fetches by itself, which cost more than the
+ * parts' own arithmetic. */
 static void put_masked_group(sdfc_writer *w, int g) {
     const sdfc_group *group = &w->c->groups[g];
     int first = group->first_part, end = first + group->part_count;
@@ -289,7 +293,8 @@ static bool any_estimate(const sdfc *c) {
     return false;
 }
 
-/* The part in work is read once and stays over the ends of loops; behind the last one there is none, 0xFFFFFFFF. */
+/* The part in work is read once and stays over the ends of loops; behind the last one there is
+ * none, 0xFFFFFFFF. */
 static void put_listed_group(sdfc_writer *w, int g) {
     const sdfc *c = w->c;
     const sdfc_group *group = &c->groups[g];
@@ -303,8 +308,8 @@ static void put_listed_group(sdfc_writer *w, int g) {
     PUT(w, "        i = masu_next_place(i);\n        part = i < count ? masu_part_at(i) : 0xFFFFFFFFu;\n    }\n");
 }
 
-/* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
- * costs its own form and not all of them. Needs a list in rising order, or bits. */
+/* One loop per form: where a driver runs all arms of a switch and masks what they write, a part
+ * then costs its own form and not all of them. Needs a list in rising order, or bits. */
 static void put_ascending(sdfc_writer *w) {
     const sdfc *c = w->c;
     bool masked = c->part_count <= MASU_SDFC_MASKED_MAX;
@@ -369,8 +374,8 @@ static bool part_moves(const sdfc *c, int part) {
     return false;
 }
 
-/* Which parts change with time or parameters: what else is seen has moved with the eye alone. Of more runs of
- * numbers than a chain of questions is worth, all of them. */
+/* Which parts change with time or parameters: what else is seen has moved with the eye alone. Of
+ * more runs of numbers than a chain of questions is worth, all of them. */
 static void put_moving(sdfc_writer *w) {
     enum { RUNS = 16 };
     const sdfc *c = w->c;

@@ -220,7 +220,8 @@ static unsigned bits_of(const sdfc_program *p, int function) {
     return bits;
 }
 
-/* The cells that a function is called in: those around, then its own by how far its coordinates are folded. */
+/* The cells that a function is called in: those around, then its own by how far its coordinates
+ * are folded. */
 static void put_inputs(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i) {
     for (int k = 0; k < i->around; k++) {
         PUT(w, ", ");
@@ -487,8 +488,9 @@ void sdfc_put_users(sdfc_writer *w) {
 
 /* ---- slots that change ---- */
 
-/* Which expressions the GLSL needs as one float, which as two. What depends on the anchor is large
- * before it is small, and so is what it is added to: 1e6 + sin(time) in one float is off by 0.06. */
+/* Which expressions the GLSL needs as one float, which as two. What depends on the anchor is
+ * large before it is small, and so is what it is added to: 1e6 + sin(time) in one float is off
+ * by 0.06. */
 enum { ONE_FLOAT = 1, TWO_FLOATS = 2 };
 
 static unsigned char *find_widths(sdfc *c) {

@@ -1,5 +1,5 @@
-/* expression.c: expressions as they are written (the grammar is in docs/sdf.md), and the table of their
- * functions. A value is 1, 2 or 3 numbers. */
+/* expression.c: expressions as they are written (the grammar is in docs/sdf.md), and the table
+ * of their functions. A value is 1, 2 or 3 numbers. */
 #include "sdfc/internal.h"
 
 #include <string.h>

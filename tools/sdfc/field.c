@@ -1,5 +1,5 @@
-/* field.c: the parts of a scene as functions of a point, with parameters at their defaults and time 0: the
- * list of operations that check.c tries, kept. */
+/* field.c: the parts of a scene as functions of a point, with parameters at their defaults and
+ * time 0: the list of operations that check.c tries, kept. */
 #include "sdfc/internal.h"
 
 #include <stdlib.h>

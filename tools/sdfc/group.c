@@ -1,5 +1,6 @@
-/* group.c: parts of the same form, that is of the same operations and perhaps other arguments, share
- * one function: they are found by a hash of their operations, compared, and put side by side. */
+/* group.c: parts of the same form, that is of the same operations and perhaps other arguments,
+ * share one function: they are found by a hash of their operations, compared, and put side by
+ * side. */
 #include "sdfc/internal.h"
 
 #include <stdlib.h>

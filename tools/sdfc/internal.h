@@ -39,10 +39,12 @@ enum sdfc_op {
     SDFC_CONST,
     SDFC_PARAM,
     SDFC_ANCHOR, /* a[0]: axis */
-    /* What is known where a surface is, or in a cell: never of slots, always of operations (lower_local.c). */
+    /* What is known where a surface is, or in a cell: never of slots, always of operations
+     * (lower_local.c). */
     SDFC_POINT, SDFC_WORLD, SDFC_NORMAL, SDFC_TRAP, /* a[0]: axis */
     SDFC_FOOTPRINT,
-    SDFC_CELL,  /* a[0]: the repetition, -1: the innermost; a[1]: the channel, -1: the number of the sector */
+    /* a[0]: the repetition, -1: the innermost; a[1]: the channel, -1: the number of the sector */
+    SDFC_CELL,
     SDFC_INPUT, /* of a function: which cell it is called in */
     SDFC_TIME,
 #define T(name, count, text, code) SDFC_##name,
@@ -96,7 +98,7 @@ typedef struct sdfc_expr {
     bool anchored;           /* on the anchor */
     bool local;              /* on where it is evaluated */
     bool cellular, trapped;  /* on the innermost cell there, on what a fractal's levels met */
-    double slope;            /* by which a local one changes with the point, at most; INFINITY: not known */
+    double slope; /* by which a local one changes with the point, at most; INFINITY: not known */
     double value, low, high; /* value: at the parameters' defaults and time 0 */
 } sdfc_expr;
 
@@ -177,16 +179,17 @@ typedef struct sdfc_instr {
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 
-/* A term: operations that are left out where what they are joined to decides alone (terms.c). They end with
- * the operation that joins them; the first term of a join ends with its own value. */
+/* A term: operations that are left out where what they are joined to decides alone (terms.c).
+ * They end with the operation that joins them; the first term of a join ends with its own value. */
 typedef struct sdfc_term {
     int first, last; /* operations */
     int bit;         /* of its part's terms, or -1: always evaluated */
     int before;      /* bits of the same join's terms in front of it */
     int smooth;      /* the argument (~operand) that is the radius of the blend, or 0 */
-    int cap;         /* instead of a bit: evaluated where its other operand exceeds this argument (~operand) */
+    /* instead of a bit: evaluated where its other operand exceeds this argument (~operand) */
+    int cap;
     bool opens;      /* the first of its join */
-    bool far;        /* left out it counts as endlessly far, instead of leaving what it is joined to */
+    bool far; /* left out it counts as endlessly far, instead of leaving what it is joined to */
     bool most;       /* the join takes the larger value */
     double lipschitz; /* of it and of what it is joined to, per metre of the world */
 } sdfc_term;
@@ -215,7 +218,8 @@ typedef struct sdfc_program {
     int *args; /* expressions */
     int arg_count, arg_capacity;
     int variable_count;
-    int surface;            /* the function that makes the material where it is not the same everywhere; 0: none */
+    /* the function that makes the material where it is not the same everywhere; 0: none */
+    int surface;
     int look[8];            /* its results: operands */
 } sdfc_program;
 
@@ -234,7 +238,8 @@ typedef struct sdfc_group {
     int first_part, part_count;
     int *slot_of_arg; /* -1: a literal */
     int slot_count;
-    int first_term, term_count; /* bits of each part's terms; of the first part, then part by part */
+    /* bits of each part's terms; of the first part, then part by part */
+    int first_term, term_count;
     bool flat;  /* half-spaces: f is affine in the point */
     bool moves; /* a root transform of its parts changes */
 } sdfc_group;
@@ -281,13 +286,14 @@ typedef struct sdfc_symbol {
     int index;
 } sdfc_symbol;
 
-/* A slot that is a constant sum of the anchor's coordinates, taken modulo a period where that is not
- * 0. As data: a scene has thousands of them, and as code no optimiser comes to an end. */
+/* A slot that is a constant sum of the anchor's coordinates, taken modulo a period where that is
+ * not 0. As data: a scene has thousands of them, and as code no optimiser comes to an end. */
 typedef struct sdfc_place {
     uint32_t slot;
     double factor[3], term, period, inverse;
 } sdfc_place;
-enum { SDFC_SHALLOW_LEVELS = 2 }; /* a Mandelbulb of no more: its estimate is a bound, and a better one */
+/* a Mandelbulb of no more: its estimate is a bound, and a better one */
+enum { SDFC_SHALLOW_LEVELS = 2 };
 enum { SDFC_PLACE_SLOTS = 12 }; /* the slot, then the rest in two floats each, inverse in one */
 
 typedef struct sdfc_text {
@@ -456,7 +462,8 @@ void sdfc_assign_slots(sdfc *c); /* after that */
 void sdfc_assign_terms(sdfc *c);                 /* bits, of a scene of few parts */
 bool sdfc_any_rough(const sdfc *c); /* fractals, what is steep, what nobody knows */
 uint32_t sdfc_term_word(const sdfc *c, int word); /* the bits of terms in it */
-uint32_t sdfc_block_words(const sdfc *c);        /* of all bits, or of places in a list; 0: nothing to choose */
+/* of all bits, or of places in a list; 0: nothing to choose */
+uint32_t sdfc_block_words(const sdfc *c);
 void sdfc_emit(sdfc *c);
 void sdfc_check(sdfc *c, uint32_t pairs);
 /* Warns of parts that a camera is inside of. */

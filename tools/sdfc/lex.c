@@ -1,5 +1,5 @@
-/* lex.c: text -> tokens, those of included files in the place of their names; and the growing arrays of
- * a compilation. */
+/* lex.c: text -> tokens, those of included files in the place of their names; and the growing
+ * arrays of a compilation. */
 #include "sdfc/internal.h"
 #include "image.h"
 

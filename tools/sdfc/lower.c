@@ -15,7 +15,8 @@
 
 #define INSTRS_MAX 60000
 
-static const sdfc_point entry = {0, 1, 2, {0}}; /* the variables of a function that are its parameters */
+/* the variables of a function that are its parameters */
+static const sdfc_point entry = {0, 1, 2, {0}};
 
 /* ---- writing ---- */
 
@@ -367,7 +368,8 @@ static sdfc_point reflect(sdfc_lowering *l, sdfc_point p, int nx, int ny, int nz
     return (sdfc_point){x, y, OP(l, reflect, p.z, d, nz), {0}};
 }
 
-/* Into one octant, then across its diagonals into x >= y >= z: reflections only. Then the factor. */
+/* Into one octant, then across its diagonals into x >= y >= z: reflections only. Then the
+ * factor. */
 static int lower_kaleidoscope(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     int k = sdfc_argument(l, s->number[0]);
     int shift[3];

@@ -29,10 +29,13 @@ typedef struct sdfc_lowering {
     int function; /* being written */
     bool root;    /* no shape but movements, turns and scalings has been met */
     double stretch; /* metres here for one of the world, at most; 0: not known */
-    unsigned folded; /* axes that jump from cell to cell: what is alike on both sides alone is continuous */
+    /* axes that jump from cell to cell: what is alike on both sides alone is continuous */
+    unsigned folded;
     bool at_fold;    /* nothing has been done to the point since */
-    bool in_cells;   /* of a repetition that looks at several: what is left out of a cut makes a cell nearer */
-    int cell[SDFC_CELLS_DEEP], seed[SDFC_CELLS_DEEP], cells; /* that it stands in; operands: of sectors their number */
+    /* of a repetition that looks at several: what is left out of a cut makes a cell nearer */
+    bool in_cells;
+    /* that it stands in; operands: of sectors their number */
+    int cell[SDFC_CELLS_DEEP], seed[SDFC_CELLS_DEEP], cells;
     bool sector[SDFC_CELLS_DEEP];
     /* of the function that makes materials */
     bool surface;

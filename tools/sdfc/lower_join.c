@@ -33,8 +33,9 @@ static sdfc_look joined_look(sdfc_lowering *l, const sdfc_shape *s, int d, int e
     }
 }
 
-/* All operands at once, so that their order does not matter: see blend_two in library_joins.inc. An operand that is
- * farther than those before it by the radius has no share, to the bit: it is a term. */
+/* All operands at once, so that their order does not matter: see blend_two in library_joins.inc.
+ * An operand that is farther than those before it by the radius has no share, to the bit: it is
+ * a term. */
 static int lower_blend(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     int f[SDFC_CHILDREN_MAX] = {0}, n = s->children;
     sdfc_look looks[SDFC_CHILDREN_MAX] = {{0}};

@@ -1,7 +1,8 @@
-/* lower_local.c: what depends on where it is asked. Expressions of the cell that a shape stands in become
- * operations of the shape's function. Materials of such expressions, and those that are painted on parts of a
- * shape, become a second function of the part: it goes the same way as the first, keeps to the nearest of several
- * cells, and mixes looks where shapes blend. The march never calls it. See lower.c. */
+/* lower_local.c: what depends on where it is asked. Expressions of the cell that a shape stands
+ * in become operations of the shape's function. Materials of such expressions, and those that
+ * are painted on parts of a shape, become a second function of the part: it goes the same way as
+ * the first, keeps to the nearest of several cells, and mixes looks where shapes blend. The
+ * march never calls it. See lower.c. */
 #include "sdfc/lower.h"
 
 #include <string.h>

@@ -1,9 +1,11 @@
-/* lower_repeat.c: repetitions become operations: folds, and the least of several cells; see lower.c. */
+/* lower_repeat.c: repetitions become operations: folds, and the least of several cells; see
+ * lower.c. */
 #include "sdfc/lower.h"
 
 #include <string.h>
 
-/* What the function of a cell is told: the coordinates before the fold and 1 / period, and the cells around. */
+/* What the function of a cell is told: the coordinates before the fold and 1 / period, and the
+ * cells around. */
 static void add_names(sdfc_lowering *l, const sdfc_shape *s, const int in[3], int out[9]) {
     int none = s->cell || l->cells ? sdfc_literal(l, 0) : 0;
     for (int i = 0; i < 9; i++) out[i] = none;
@@ -146,8 +148,9 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     return isfinite(s->extra[3]) ? sdfc_capped(l, d, sdfc_literal(l, s->extra[3]), &s->facts, p) : d;
 }
 
-/* Into half a sector around +x, of a shape that is its own mirror image in z: reflections alone, each of which halves the
- * angle that is left, counted in half sectors. A turn by an angle that was found takes 3 to 5 times as much. */
+/* Into half a sector around +x, of a shape that is its own mirror image in z: reflections alone,
+ * each of which halves the angle that is left, counted in half sectors. A turn by an angle that
+ * was found takes 3 to 5 times as much. */
 static sdfc_point fold_sectors(sdfc_lowering *l, int count, sdfc_point p) {
     const double pi = 3.14159265358979323846;
     p.z = OP(l, abs, p.z);
@@ -169,7 +172,8 @@ static sdfc_point fold_sectors(sdfc_lowering *l, int count, sdfc_point p) {
     return p;
 }
 
-/* The least of a function's values at two points of the same y. `sectors`: theirs, if the function takes it. */
+/* The least of a function's values at two points of the same y. `sectors`: theirs, if the
+ * function takes it. */
 static int least_of_two(sdfc_lowering *l, const sdfc_shape *s, int function, sdfc_point q, sdfc_point r, const int *sectors,
                         bool nearest) {
     int none = sdfc_literal(l, 0);

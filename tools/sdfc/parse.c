@@ -326,7 +326,8 @@ static bool begins_statement(const sdfc *c, int token) {
     return false;
 }
 
-/* Behind the statement that begins at `first`: at its ";" or "}", or before a line that begins another. */
+/* Behind the statement that begins at `first`: at its ";" or "}", or before a line that begins
+ * another. */
 static void skip_statement(sdfc *c, int first) {
     int depth = 0, at = first;
     bool block = sdfc_token_is(c, first, "for") || sdfc_token_is(c, first, "material");

@@ -73,7 +73,7 @@ typedef struct masu_sdfc_result {
     uint32_t block_words; /* that say what of the field matters in a block of pixels, at most
                              MASU_SDFC_BLOCK_WORDS_MAX; 0: it is one whole */
     bool dynamic;     /* slots depend on parameters or time */
-    bool timeless;    /* none depends on time */
+    bool timeless;    /* no expression uses time; GLSL of a block may */
     bool anchored;    /* slots depend on the anchor */
     double glossiest; /* least roughness that a part which does not shine may have; 1: all do */
 } masu_sdfc_result;
@@ -111,9 +111,11 @@ void masu_sdfc_field_close(masu_sdfc_field *field);
 const masu_sdfc_part *masu_sdfc_field_parts(const masu_sdfc_field *field, uint32_t *count);
 /* Numbers that a thread brings for masu_sdfc_field_run to work in. */
 size_t masu_sdfc_field_room(const masu_sdfc_field *field);
-/* Of one part, which must not be of a glsl block (`user`): at most `lipschitz` times the distance. */
+/* Of one part, which must not be of a glsl block (`user`): at most `lipschitz` times the
+ * distance. */
 double masu_sdfc_field_run(const masu_sdfc_field *field, uint32_t part, const double p[3], double *room);
-/* What it looks like at p, with a normal and the width of a pixel there: albedo, roughness, emissive, metallic. */
+/* What it looks like at p, with a normal and the width of a pixel there: albedo, roughness,
+ * emissive, metallic. */
 void masu_sdfc_field_material(const masu_sdfc_field *field, uint32_t part, const double p[3], const double n[3],
                               double width, double *room, double out[MASU_SDFC_MATERIAL_SLOTS]);
 

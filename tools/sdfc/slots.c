@@ -1,7 +1,7 @@
-/* slots.c: where in a scene's array of floats its numbers lie, and what is in them at first: a record
- * per part, the materials, and the arguments by which parts of one form differ. Those that change are
- * listed with their expressions; of an anchored scene, those that are sums of the anchor's coordinates
- * become data (sdfc_place). */
+/* slots.c: where in a scene's array of floats its numbers lie, and what is in them at first: a
+ * record per part, the materials, and the arguments by which parts of one form differ. Those
+ * that change are listed with their expressions; of an anchored scene, those that are sums of
+ * the anchor's coordinates become data (sdfc_place). */
 #include "sdfc/internal.h"
 
 #include <stdlib.h>
@@ -190,8 +190,8 @@ static void fill_record(sdfc *c, int part) {
 
 /* ---- all of them ---- */
 
-/* Which slots there are: the parts' records, materials, arguments that parts of a form do not share,
- * sides of the box that change. */
+/* Which slots there are: the parts' records, materials, arguments that parts of a form do not
+ * share, sides of the box that change. */
 static void number_slots(sdfc *c) {
     for (int g = 0; g < c->group_count; g++) choose_slots(c, g);
     long slots = (long)c->part_count * MASU_SDFC_PART_SLOTS +

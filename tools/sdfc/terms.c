@@ -1,14 +1,14 @@
-/* terms.c: which operands of unions, cuts and blends are terms: operations that a march leaves out where
- * their value decides nothing.
+/* terms.c: which operands of unions, cuts and blends are terms: operations that a march leaves out
+ * where their value decides nothing.
  *
- * In a ball of radius r two fields a and b of constant L keep a - b within 2 r L of what it is at the middle.
- * So min(a, b) is a throughout the ball if b exceeds a by more than that at the middle, and a blend of radius k
- * likewise if by k more (Barbier et al., "Lipschitz Pruning", Eurographics 2025, section 4). Leaving b out changes
- * no value in the ball, to the bit. Whoever has evaluated the field with masu_margin = 2 r finds the bits of what
- * is left in masu_kept.
+ * In a ball of radius r two fields a and b of constant L keep a - b within 2 r L of what it is at
+ * the middle. So min(a, b) is a throughout the ball if b exceeds a by more than that at the middle,
+ * and a blend of radius k likewise if by k more (Barbier et al., "Lipschitz Pruning", Eurographics
+ * 2025, section 4). Leaving b out changes no value in the ball, to the bit. Whoever has evaluated
+ * the field with masu_margin = 2 r finds the bits of what is left in masu_kept.
  *
- * Bits: a scene of few parts has one for each part; behind them come those of the terms, part by part. What a
- * bit saves must be worth more than asking for it. */
+ * Bits: a scene of few parts has one for each part; behind them come those of the terms, part by
+ * part. What a bit saves must be worth more than asking for it. */
 #include "sdfc/internal.h"
 
 enum { WORD = 32, LEAST_COST = 10 };
@@ -24,8 +24,8 @@ static int cost_of_term(const sdfc_function *f, const sdfc_term *t) {
     return cost;
 }
 
-/* The bits of the terms of the same join in front of term t: those that end where its other operand does, and
- * what that one is joined of. */
+/* The bits of the terms of the same join in front of term t: those that end where its other
+ * operand does, and what that one is joined of. */
 static int bits_before(const sdfc_function *f, int t) {
     int bits = 0, end = f->terms[t].first - 1;
     if (f->terms[t].opens || f->terms[t].cap) return 0;

@@ -34,7 +34,7 @@ void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
     }
 }
 
-/* ---- Names read ------------------------------------------------------------------------------ */
+/* ---- Parsing --------------------------------------------------------------------------------- */
 
 static bool wrong(const char *name, char *error, size_t error_size, const char *format, ...) {
     char text[360];
@@ -47,7 +47,7 @@ static bool wrong(const char *name, char *error, size_t error_size, const char *
 }
 
 #define ONE(...) +1
-_Static_assert(0 MASU_KNOBS(ONE, ONE) <= 64, "a bit for each knob that was seen");
+_Static_assert(0 MASU_KNOBS(ONE, ONE) <= 64, "a bit for each parsed knob");
 
 /* A value ends after its number, which may contain a '+' ("1e+09"), or else at the next '+'. */
 static bool read_part(const char *name, const char **at, masu_rung *rung, uint64_t *seen,

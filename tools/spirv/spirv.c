@@ -23,8 +23,9 @@ static uint32_t result_word(uint32_t op) {
     return 0;
 }
 
-/* The least that an instruction has words, the first included: the specification's, of all whose operands somebody
- * here reads by their place. One with fewer would let its reader see the next instruction's, or none. */
+/* The least that an instruction has words, the first included: the specification's, of all whose
+ * operands somebody here reads by their place. One with fewer would let its reader see the next
+ * instruction's, or none. */
 static uint32_t least_words(uint32_t op) {
     static const struct {
         uint16_t first, last, words;

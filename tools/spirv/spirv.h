@@ -1,11 +1,12 @@
-/* spirv.h: looking into SPIR-V modules: instructions, definitions, names. Enough of the
- * format (Khronos SPIR-V specification, sections 2.3 and 3) for tests that ask what a compiler has
- * made of a shader, and for the model sheet, which counts operations.
+/* spirv.h: looking into SPIR-V modules: instructions, definitions, names. Enough of the format
+ * (Khronos SPIR-V specification, sections 2.3 and 3) for tests that ask what a compiler has made of
+ * a shader, and for the model sheet, which counts operations.
  *
- * A blob's modules may be anybody's. What is promised of a module that has been read: instructions are as long as
- * their kind needs at least (operands up to there may be read by their place), their results are ids below the
- * bound, names end. What is not: operands may be any number, so ids are looked up with spirv_def; a definition may
- * be of any kind, stand anywhere, name itself. */
+ * A blob's modules may be anybody's. What is promised of a module that has been read:
+ * instructions are as long as their kind needs at least (operands up to there may be read by
+ * their place), their results are ids below the bound, names end. What is not: operands may be
+ * any number, so ids are looked up with spirv_def; a definition may be of any kind, stand
+ * anywhere, name itself. */
 #ifndef MASU_SPIRV_H
 #define MASU_SPIRV_H
 

@@ -24,14 +24,16 @@ typedef struct chain {
     uint32_t storage, type; /* of what it points to; of a component: of its vector */
     bool component, alone, loaded; /* of a vector; nothing but loads use it; some do */
     uint32_t number;  /* id of the component's index */
-    uint32_t vector;  /* id of a pointer to the vector; 0: to be made of this chain without its last index */
+    /* id of a pointer to the vector; 0: to be made of this chain without its last index */
+    uint32_t vector;
     bool change;
 } chain;
 
 /* What is read of one vector. */
 typedef struct group {
     place at;
-    uint32_t parts; /* a bit for each component, all for the whole or for one that is not constant */
+    /* a bit for each component, all for the whole or for one that is not constant */
+    uint32_t parts;
 } group;
 
 typedef struct state {
@@ -121,7 +123,8 @@ static void note_load(state *s, const spirv_instruction *load) {
     }
 }
 
-/* A word that only looks like the id does no harm: a chain stays beside the new one that could go. */
+/* A word that only looks like the id does no harm: a chain stays beside the new one that could
+ * go. */
 static void note_uses(state *s, const spirv_instruction *i) {
     uint32_t last = i->count;
     if (i->op == COMPOSITE_EXTRACT || i->op == SPIRV_SWITCH) last = i->op == SPIRV_SWITCH ? 3 : 4;
@@ -188,7 +191,8 @@ typedef struct pointer_type {
     uint32_t storage, type, id;
 } pointer_type;
 
-/* The types of pointers that chains without their last index have; those that the module lacks are written. */
+/* The types of pointers that chains without their last index have; those that the module lacks
+ * are written. */
 static void put_pointers(state *s, pointer_type *list, size_t *count) {
     for (size_t k = 0; k < s->m.count; k++) {
         const spirv_instruction *i = &s->m.list[k];
@@ -233,7 +237,8 @@ static void write_out(state *s, pointer_type *list) {
         const spirv_instruction *i = &s->m.list[k];
         if (i->op == SPIRV_FUNCTION && !inside) put_pointers(s, list, &pointers);
         inside |= i->op == SPIRV_FUNCTION;
-        /* Of a broken module something outside of functions may have a chain's id: the types are not there yet. */
+        /* Of a broken module something outside of functions may have a chain's id: the types are
+         * not there yet. */
         bool chained = i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN;
         if (inside && chained && s->chains[i->word[2]].change)
             put_chain(s, i, list);

@@ -227,7 +227,8 @@ VkResult masu_window_acquire(masu_window *w, uint32_t slot, uint32_t *image) {
                                        w->acquired[slot], VK_NULL_HANDLE, image);
     if (r == VK_SUBOPTIMAL_KHR) { /* usable: the image can be drawn, and its semaphore will be
                                    * signalled */
-        w->stale |= !w->rotated; /* an unrotated swapchain on a rotated display is always suboptimal */
+        /* an unrotated swapchain on a rotated display is always suboptimal */
+        w->stale |= !w->rotated;
         return VK_SUCCESS;
     }
     if (r == VK_ERROR_OUT_OF_DATE_KHR) w->stale = true;

@@ -11,7 +11,7 @@ typedef struct masu_bake_buffer {
     size_t bytes, capacity;
 } masu_bake_buffer;
 
-/* Appends (data NULL: zeros) and returns the new bytes, which stay put until the next append. */
+/* Appends (data NULL: zeros) and returns the new bytes, valid until the next append. */
 void *masu_bake_append(masu_bake_buffer *buffer, const void *data, size_t bytes);
 void masu_bake_append_text(masu_bake_buffer *buffer, const char *text); /* without its NUL */
 void masu_bake_release(masu_bake_buffer *buffer);

@@ -1,17 +1,19 @@
-/* inside.h: what a model may name. A model is somebody's: the files that it says belong to it are read where they lie in
- * its own folder or below, or where the command line has said that files may come from (--texture-path). Everything that
- * opens a file because another file named it asks here: buffers and pictures of glTF, pictures of materials, what Assimp
- * opens besides the model. A scene's description is the user's own, and names what it likes. */
+/* inside.h: restricts the files that a model may open. Models are untrusted: files that they
+ * name are read only from the model's folder and its subfolders, or from folders given by
+ * --texture-path. All code that opens a file named by another file must check here: buffers and
+ * images of glTF, images of materials, and files that Assimp opens. A scene description is
+ * trusted and may name any file. */
 #ifndef MASU_BAKE_INSIDE_H
 #define MASU_BAKE_INSIDE_H
 
 #include <stdbool.h>
 
-/* Folders with ':' between, or NULL; the text stays the caller's. Once, before anything is read: children know it too. */
+/* Folders separated by ':', or NULL; the caller keeps the string. Call once, before anything is
+ * read, so that child processes inherit it. */
 void masu_bake_inside_also(const char *folders);
 
-/* Whether `path` may be opened on behalf of `model`, a file's path: links are followed first. What is not there may be:
- * whoever opens it says so. */
+/* Whether `path` may be opened for `model`, a file's path, after links are resolved. A missing
+ * file is allowed: opening it reports the error. */
 bool masu_bake_inside(const char *model, const char *path);
 
 #endif

@@ -47,8 +47,8 @@ bool masu_bake_json_vec3(const masu_bake_json *at, const char *name, double low,
 bool masu_bake_json_box(const masu_bake_json *at, masu_bake_box *out);
 bool masu_bake_json_boolean(const masu_bake_json *at, const char *name, bool *out);
 bool masu_bake_json_string(const masu_bake_json *at, const char *name, const char **out);
-/* A feature that is told by an object with its settings, or by true or false. *out: the object, or
- * nothing; *wanted stays as it was in the member's absence. */
+/* A feature given as an object with its settings, or as true or false. *out: the object, or
+ * null; *wanted is unchanged if the member is absent. */
 bool masu_bake_json_feature(const masu_bake_json *at, const char *name, masu_bake_json *out,
                             bool *wanted);
 bool masu_bake_json_has(const masu_bake_json *at, const char *name);

@@ -9,8 +9,8 @@
 
 #define MASU_BAKE_PI 3.14159265358979323846
 
-/* Coordinates beyond this are taken for damage: their squares, which shaders form, stay finite in
- * fp32. */
+/* Larger coordinates are treated as damage: their squares, which shaders compute, must be finite
+ * in fp32. */
 #define MASU_BAKE_COORDINATE_MAX 1e15
 
 typedef struct masu_bake_vec3 {
@@ -63,8 +63,8 @@ static inline bool masu_bake_sane(masu_bake_vec3 a) {
     return fabs(a.x) <= most && fabs(a.y) <= most && fabs(a.z) <= most;
 }
 
-/* To unit length; false if the vector is zero or not finite. The largest component is divided out
- * first, so that neither tiny nor huge vectors lose their length to the range of double. */
+/* Normalizes; false if the vector is zero or not finite. Divides by the largest component first,
+ * so that neither tiny nor huge vectors lose their length to the range of double. */
 static inline bool masu_bake_normalize(masu_bake_vec3 *a) {
     double most = fmax(fabs(a->x), fmax(fabs(a->y), fabs(a->z)));
     if (!(most > 0.0 && most <= DBL_MAX) || isnan(a->x + a->y + a->z)) return false;
@@ -84,10 +84,10 @@ static inline masu_bake_affine masu_bake_scaling(masu_bake_vec3 s) {
     return (masu_bake_affine){{s.x, 0, 0, 0, 0, s.y, 0, 0, 0, 0, s.z, 0}};
 }
 
-/* Counter-clockwise about the axis 0, 1, 2 = x, y, z, seen from its positive end. */
+/* Counter-clockwise about the axis 0, 1, 2 = x, y, z, viewed from its positive end. */
 static inline masu_bake_affine masu_bake_rotation(int axis, double degrees) {
     double angle = degrees * (MASU_BAKE_PI / 180.0), c = cos(angle), s = sin(angle);
-    /* Quarter turns are common and should not leave 6e-17 behind. */
+    /* Multiples of 90 degrees are common and should be exact, without 6e-17. */
     double quarters = degrees / 90.0;
     if (quarters == floor(quarters)) {
         c = round(c);

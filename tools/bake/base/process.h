@@ -1,9 +1,9 @@
-/* process.h: work that masu-bake does in a child process, because it may crash, hang or eat
- * memory: importing a model (a library that parses hostile files) and running the shader tools.
+/* process.h: runs work in a child process, because it may crash, hang or exhaust memory: importing
+ * a model (a library that parses hostile files) and running the shader tools.
  *
- * The child's output comes back through a pipe while the parent keeps a clock. A signal that should
- * end masu-bake (Ctrl-C, TERM, HUP) ends the child first and then leaves through exit(), so that
- * temporary files are removed. */
+ * The child's output is read from a pipe with a time limit. A signal that should end masu-bake
+ * (Ctrl-C, TERM, HUP) ends the child first and then calls exit(), so that temporary files are
+ * removed. */
 #ifndef MASU_BAKE_PROCESS_H
 #define MASU_BAKE_PROCESS_H
 
@@ -23,8 +23,8 @@ typedef struct masu_bake_result {
     int code;
 } masu_bake_result;
 
-/* 1: built with the address sanitizer, whose shadow alone is many TiB of address space. gcc and clang say
- * so in two ways. */
+/* 1: built with the address sanitizer, whose shadow memory needs many TiB of address space. gcc
+ * and clang define different macros. */
 #if defined(__SANITIZE_ADDRESS__)
 #define MASU_BAKE_SANITIZED 1
 #elif defined(__has_feature)
@@ -36,19 +36,20 @@ typedef struct masu_bake_result {
 #define MASU_BAKE_SANITIZED 0
 #endif
 
-/* Of a clock that never goes back. */
+/* Monotonic clock. */
 double masu_bake_seconds(void);
 
 /* Called once at the start of main. */
 void masu_bake_catch_signals(void);
 /* The signal that should end this process; 0: none has come. */
 int masu_bake_heard(void);
-/* For a child: whatever ends its parent ends it, by that signal, where the system can do that (Linux). */
+/* For a child: the signal is sent to it when its parent ends, if the system supports that
+ * (Linux). */
 void masu_bake_end_with_parent(long parent, int number);
 
-/* Runs body(argument, fd) in a forked child; what it writes to fd lands in `output`. The child
- * ends with status 0 when body returns. Its standard output and, outside sanitizer builds, its
- * standard error go nowhere. */
+/* Runs body(argument, fd) in a forked child; data written to fd is appended to `output`. The
+ * child ends with status 0 when body returns. Its standard output and, outside sanitizer builds,
+ * its standard error are discarded. */
 masu_bake_result masu_bake_fork(void (*body)(void *argument, int fd), void *argument,
                                 unsigned seconds, masu_bake_buffer *output);
 
@@ -58,7 +59,7 @@ masu_bake_result masu_bake_run(const char *const *arguments, unsigned seconds,
                                masu_bake_buffer *output);
 #define MASU_BAKE_CANNOT_START 127
 
-/* For bodies: writes all of it, or ends the child when the parent is gone. */
+/* For bodies: writes all data, or ends the child if the parent has ended. */
 void masu_bake_send(int fd, const void *data, size_t bytes);
 
 #endif

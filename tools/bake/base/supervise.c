@@ -25,7 +25,8 @@ uint32_t masu_bake_memory_default(void) {
     return half < LEAST_MIB ? LEAST_MIB : half > INT32_MAX ? INT32_MAX : (uint32_t)half;
 }
 
-/* Address space, since that is what a limit can be set on: threads and pools of libraries count as well. */
+/* Address space, since that is what a limit can be set on: threads and pools of libraries count
+ * as well. */
 static void limit_memory(uint32_t mib) {
     struct rlimit old;
     rlim_t most = (rlim_t)mib << 20;

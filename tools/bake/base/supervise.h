@@ -1,8 +1,9 @@
-/* supervise.h: the whole of baking in a child process with a limit of memory and one of time. A model, a picture or a
- * shader may make any library ask for anything, and what starts masu-bake (a build, an editor) must go on.
+/* supervise.h: runs the baker in a child process with a memory limit and a time limit. A model, an
+ * image or a shader may make any library allocate without bound, and the caller of masu-bake (a
+ * build, an editor) must survive.
  *
- * The parent does nothing but wait. It passes on signals that should end masu-bake, ends the child when its time is over,
- * and ends with its exit code; a parent that is killed takes the child with it (Linux). */
+ * The parent only waits. It forwards signals that should end masu-bake, ends the child when its
+ * time is over, and returns its exit code; a killed parent takes the child with it (Linux). */
 #ifndef MASU_BAKE_SUPERVISE_H
 #define MASU_BAKE_SUPERVISE_H
 
@@ -16,8 +17,9 @@ uint32_t masu_bake_memory_default(void);
 typedef struct masu_bake_supervised {
     int (*body)(const void *argument); /* returns an exit code */
     const void *argument;
-    const char *about;  /* what is baked, for messages */
-    const char *output; /* a draft of it that the child leaves is removed; or NULL */
+    const char *about;  /* name of the input, for messages */
+    /* output file whose temporary file is removed if the child leaves one; or NULL */
+    const char *output;
     uint32_t memory_mib, seconds; /* 0: no limit */
 } masu_bake_supervised;
 

@@ -1,8 +1,8 @@
-/* build.c: the steps of building; see build.h. The order matters: occluders are of meshes as they
- * are and then looked for in their LODs; the box of all instances frames the camera; the SDF's shader
- * depends on whether there are polygons; textures say which materials are masked or blended, before
- * occluders are dropped and trees are grown; instances are sorted before anything is kept by their
- * number. */
+/* build.c: the steps of building; see build.h. The order matters: occluders are of meshes as
+ * they are and then looked for in their LODs; the box of all instances frames the camera; the
+ * SDF's shader depends on whether there are polygons; textures say which materials are masked or
+ * blended, before occluders are dropped and trees are grown; instances are sorted before
+ * anything is kept by their number. */
 #include "bake/build/build.h"
 #include "bake/build/first_look.h"
 #include "bake/build/look.h"
@@ -89,7 +89,8 @@ static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, c
     masu_bake_vec3 forward = masu_bake_v3f(camera->direction);
     if (camera->height > 0 && !(d->look.height > 0)) d->look.height = (double)camera->height;
     if (d->look.own_fov_y) d->look.height = 0;
-    if (d->look.height > 0 && !masu_bake_box_is_empty(bounds)) { /* exact in the middle of the scene */
+    /* exact in the middle of the scene */
+    if (d->look.height > 0 && !masu_bake_box_is_empty(bounds)) {
         masu_bake_vec3 middle = masu_bake_mad(bounds->low, masu_bake_sub(bounds->high, bounds->low), 0.5);
         ahead = fmax(ahead, masu_bake_dot(masu_bake_sub(middle, at), forward));
     }
@@ -185,7 +186,8 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     free(panorama.rgb);
     if (options->describe) return true;
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
-                                                     d->reflections.wanted, d->probes.live, options->variants);
+                                                     d->sdf.is_static, d->reflections.wanted,
+                                                     d->probes.live, options->variants);
 }
 
 static bool build_probes(const masu_bake_description *d, const masu_bake_options *options,
@@ -219,7 +221,8 @@ bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report) {
     if (!build_scene(d, options, content, report)) return false;
     if (options->describe) return true;
-    if (d->probes.live && !d->reflections.wanted) { /* rays of probes, and of nothing that mirrors */
+    /* rays of probes, and of nothing that mirrors */
+    if (d->probes.live && !d->reflections.wanted) {
         d->reflections.wanted = true;
         d->reflections.cutoff = 0;
     }

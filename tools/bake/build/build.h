@@ -13,19 +13,19 @@
 #include "bake/mesh/detail.h"
 #include "bake/mesh/occluders.h"
 
-/* What came of it, for statistics. */
+/* Results, for statistics. */
 typedef struct masu_bake_report {
     masu_bake_lod_report lods;
     masu_bake_occluder_report occluders;
     masu_bake_bvh_report reflections;
-    bool reflected; /* reflections were asked for */
+    bool reflected; /* the description requests reflections */
     masu_bake_box bounds; /* of the models, without the ground of a first look */
     masu_bake_buffer warnings; /* the texts of all, each with its NUL */
 } masu_bake_report;
 
-/* False after reporting. It completes the description by what depends on the models' shapes: the
- * view of a model without a scene, the sun of a file. With options->describe that is all, and the
- * content has geometry and view alone. */
+/* False after reporting. Adds to the description the values that depend on the models' shapes:
+ * the camera of a model without a scene, the sun of a file. With options->describe it stops
+ * there, and the content has geometry and camera only. */
 bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report);
 

@@ -1,24 +1,28 @@
-/* first_look.c: a model without a scene, as a photographer would put it: three-quarter view, the model nearly as
- * large as the frame, a lamp of the sky from the side, a dark enough background that white things stand out, a ground
- * that takes shadow and a soft reflection; see first_look.h.
+/* first_look.c: a model without a scene, as a photographer would put it: three-quarter view, the
+ * model nearly as large as the frame, a lamp of the sky from the side, a dark enough background
+ * that white things stand out, a ground that takes shadow and a soft reflection; see first_look.h.
  *
- * The camera's direction is given; where it stands is then exact. In axes of the camera a point (x, y, z), z
- * into the picture, is within the frame if |x - cx| <= a (z - cz) and |y - cy| <= b (z - cz), for the half angles'
- * tangents a and b. The four bounds are planes, the point that meets most of each is found in one pass over the
- * vertices, and the nearest cz that satisfies all follows. */
+ * The camera's direction is given; where it stands is then exact. In axes of the camera a point
+ * (x, y, z), z into the picture, is within the frame if |x - cx| <= a (z - cz) and |y - cy| <= b
+ * (z - cz), for the half angles' tangents a and b. The four bounds are planes, the point that
+ * meets most of each is found in one pass over the vertices, and the nearest cz that satisfies
+ * all follows. */
 #include "bake/build/first_look.h"
 #include "bake/mesh/shape.h"
 
 #include <string.h>
 
-#define FRAME_SHARE 0.89   /* of the height or width of the picture, whichever the model meets first */
+/* of the height or width of the picture, whichever the model meets first */
+#define FRAME_SHARE 0.89
 #define MOVING_SHARE 0.75 /* of a model that plays clips, which is framed at rest */
-#define ASPECT (16.0 / 9) /* of the picture that it is made for: in narrower ones a wide model is cut off */
-#define FLAT 0.12         /* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
+/* of the picture that it is made for: in narrower ones a wide model is cut off */
+#define ASPECT (16.0 / 9)
+/* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
+#define FLAT 0.12
 #define STEEP 0.85        /* height / depth of the camera's direction for these */
 #define LOW 0.5           /* height / the longer side of what is looked down on */
 #define LOOK_DOWN 0.3     /* of its height: the camera's height above the top */
-#define GROUND_RADII 60   /* half a side of the ground, in radii of the model: it ends in the haze */
+#define GROUND_RADII 60 /* half a side of the ground, in radii of the model: it ends in the haze */
 
 typedef struct axes {
     masu_bake_vec3 right, up, forward;
@@ -92,7 +96,8 @@ static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_bo
     return key;
 }
 
-/* The near end of a long, low model, such as a table, fills the frame: the camera rises until it sees the top. */
+/* The near end of a long, low model, such as a table, fills the frame: the camera rises until it
+ * sees the top. */
 static masu_blob_camera_key frame_from_above(const masu_bake_content *c, const masu_bake_box *box,
                                              double fov_y, bool flat) {
     masu_bake_vec3 e = extent_of(box);

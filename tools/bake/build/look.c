@@ -30,10 +30,11 @@ static masu_blob_camera_key framing_key(const masu_bake_box *box, double fov_y) 
     return key;
 }
 
-/* An orthographic camera is a narrow lens far behind the image plane, where the near plane then is: the size is exact at
- * the target, and off by 0.035 % at half an image's height in front of it or behind, 0.34 pixels at the edge of 1920 x
- * 1080. What floats lose with the distance is 0.1 pixels, and would be more with a narrower one. Returns how far back
- * the camera has moved at least. */
+/* An orthographic camera is a narrow lens far behind the image plane, where the near plane then
+ * is: the size is exact at the target, and off by 0.035 % at half an image's height in front of
+ * it or behind, 0.34 pixels at the edge of 1920 x 1080. What floats lose with the distance is
+ * 0.1 pixels, and would be more with a narrower one. Returns how far back the camera has moved
+ * at least. */
 #define LENS 0.0007 /* radians */
 
 static double flatten(double height, masu_blob_camera_key *keys, size_t count) {
@@ -50,8 +51,8 @@ static double flatten(double height, masu_blob_camera_key *keys, size_t count) {
     return least;
 }
 
-/* Keys between those of a path that turns: positions that far away are interpolated along a chord. At TURN radians it
- * comes 0.04 of the picture's height nearer than the arc. */
+/* Keys between those of a path that turns: positions that far away are interpolated along a
+ * chord. At TURN radians it comes 0.04 of the picture's height nearer than the arc. */
 #define TURN 0.015
 #define HALVINGS 12
 

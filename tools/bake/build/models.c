@@ -159,8 +159,8 @@ static variant *variant_of(model_builder *b, loaded_model *of,
 
 /* ---- placement ---- */
 
-/* Scales the longest side of the box of what is shown, and moves the box by its centre or the middle
- * of its lower face. */
+/* Scales the longest side of the box of what is shown, and moves the box by its centre or the
+ * middle of its lower face. */
 static bool fit(const model_builder *b, const masu_bake_model *model,
                 const masu_bake_content *piece, masu_bake_affine *placement) {
     const masu_bake_fit *f = &model->fit;

@@ -25,22 +25,22 @@
 #include "bake/shader/sdf.h"
 
 #define MASU_BAKE_SPARE_MAX 4096u
-#define MASU_BAKE_FOV_Y 40.0        /* degrees, where the scene says nothing */
-/* Degrees, of shadows of the SDF, where the scene says nothing. */
+#define MASU_BAKE_FOV_Y 40.0        /* degrees, the default */
+/* Degrees, for SDF shadows, the default. */
 #define MASU_BAKE_SUN_RADIUS 0.27
 
-/* What a model's materials are changed to: the values, and what has no number in the scene yet. */
+/* Changes to a model's materials: values, and names that have no index in the scene yet. */
 typedef struct masu_bake_material_change {
     masu_bake_override value;            /* map[i]: picture[i] is given */
     const char *picture[MASU_BAKE_MAPS]; /* files */
     masu_blob_meso meso;                 /* if value.meso */
 } masu_bake_material_change;
 
-/* What the longest side of the model's box is scaled to, and where the box goes. */
+/* Target length of the longest side of a model's bounds, and their position. */
 typedef struct masu_bake_fit {
     bool wanted, center,
-        base;    /* the box's centre, or the middle of its lower face, comes to `at` */
-    double size; /* metres; 0: as it is */
+        base;    /* the bounds' centre, or the centre of their lower face, is moved to `at` */
+    double size; /* metres; 0: unchanged */
     masu_bake_vec3 at;
 } masu_bake_fit;
 
@@ -51,7 +51,7 @@ typedef enum masu_bake_hides {
 } masu_bake_hides;
 
 typedef struct masu_bake_model {
-    const char *where; /* in the description, for errors: "models[3]"; "": the whole of it */
+    const char *where; /* position in the description, for errors: "models[3]"; "": all of it */
     const char *file;  /* NULL: by formula */
     uint32_t shape;    /* of the description's shapes, without a file */
     const char *variant; /* of the file's materials, or NULL */
@@ -60,13 +60,13 @@ typedef struct masu_bake_model {
     bool moving; /* it is a model of the scene for the host, too */
     bool plays;  /* moving, if its file has clips; building decides it */
     bool hidden; /* at first; moving, then */
-    uint32_t spare; /* so many more of it, hidden; moving, then */
+    uint32_t spare; /* number of additional hidden copies, if movable */
     double merge;               /* cell size, metres; 0: as the file has it */
     double lights;              /* factor of its lights' colours; 0: without them */
     masu_bake_affine placement; /* scale and rotation, before the fit */
     masu_bake_fit fit;
     masu_bake_vec3 translation;
-    bool drop;     /* then it falls on what has been placed before, or on y = ground */
+    bool drop;     /* drop onto earlier models, or onto y = ground */
     double ground; /* metres */
     masu_bake_hides hides;
     masu_bake_box occluder; /* of HIDES_BOX: in object space */
@@ -88,13 +88,13 @@ typedef struct masu_bake_look {
     size_t key_count;
     const char *camera;           /* of a model, instead of keys; or NULL */
     double fov_y;                 /* degrees, of that one */
-    bool own_fov_y;               /* the scene says so */
+    bool own_fov_y;               /* given by the scene */
     double height;                /* of an orthographic one, metres; 0: perspective */
     double near;                  /* metres; 0: by default */
     masu_bake_vec3 sun_direction; /* towards the sun */
     masu_bake_vec3 sun_color;
     double sun_intensity;
-    bool own_sun, own_sun_color; /* the scene says something of it */
+    bool own_sun, own_sun_color; /* given by the scene */
     bool sun_of_model;           /* it is a directional light of a file */
     bool shadows;
     masu_blob_shadow shadow;
@@ -124,11 +124,12 @@ typedef struct masu_bake_sdf_param {
 } masu_bake_sdf_param;
 
 typedef struct masu_bake_sdf {
-    masu_bake_box framed; /* what the default camera sees; a scene's: the bounds */
+    masu_bake_box framed; /* bounds for the default camera */
     const char *source; /* NULL: no SDF */
     masu_bake_box bounds;
     double lipschitz /* 0: measured */, max_distance;
     bool anchored;
+    bool is_static; /* declared: a field that may change is an error */
     masu_bake_occlusion occlusion;
     masu_bake_sdf_param *params;
     size_t param_count;
@@ -136,8 +137,9 @@ typedef struct masu_bake_sdf {
 
 typedef struct masu_bake_description {
     const char *file; /* that was read */
-    bool first_look;  /* camera, light, ground and reflections by the model's shape (build/first_look.h) */
-    bool default_reflections; /* the scene says nothing of them: none for very many triangles */
+    /* camera, light, ground and reflections by the model's shape (build/first_look.h) */
+    bool first_look;
+    bool default_reflections; /* not set by the scene: off for very many triangles */
     masu_bake_model *models;
     size_t model_count;
     masu_bake_shape *shapes; /* different ones */
@@ -148,20 +150,20 @@ typedef struct masu_bake_description {
     masu_bake_environment environment;
     masu_bake_sdf sdf;
     uint32_t lods;    /* of each mesh at most */
-    double occluders; /* for what is this large, metres; 0: none but those of models */
+    double occluders; /* minimum size in metres; 0: only the models' own */
     masu_bake_probe_settings probes;
     masu_bake_reflections reflections;
     masu_bake_pool pool;
 } masu_bake_description;
 
-/* Reads the scene, or makes the description of a model alone. False after reporting. What it fills
- * is the caller's to release, whatever is returned. */
+/* Reads the scene, or makes the description of a model without a scene. False after reporting.
+ * The caller releases the result, even after an error. */
 bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out);
 void masu_bake_description_release(masu_bake_description *description);
 
 masu_bake_look masu_bake_default_look(void);
 
-/* For what is found wrong only while building: reports "file: where: message". Always false. */
+/* For errors found while building: reports "file: where: message". Always false. */
 bool masu_bake_wrong(const masu_bake_description *d, const char *where, const char *format, ...);
 
 #endif

@@ -130,7 +130,7 @@ static bool read_lipschitz(const masu_bake_json *sdf, double *out) {
 bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
     static const char *const members[] = {"source", "bounds",   "lipschitz", "max_distance",
                                           "params", "anchored", "shadows",   "ambient_occlusion",
-                                          NULL};
+                                          "static", NULL};
     masu_bake_json sdf = masu_bake_json_member(scene, "sdf");
     if (!sdf.value) return true;
     masu_bake_sdf *out = &r->out->sdf;
@@ -145,6 +145,7 @@ bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
         !read_lipschitz(&sdf, &out->lipschitz) ||
         !masu_bake_json_number(&sdf, "max_distance", 1e-3, 1e15, &out->max_distance) ||
         !masu_bake_json_boolean(&sdf, "anchored", &out->anchored) ||
+        !masu_bake_json_boolean(&sdf, "static", &out->is_static) ||
         !read_shadows(&sdf, r) || !read_ambient_occlusion(&sdf, r) || !read_params(&sdf, r)) {
         return false;
     }

@@ -9,13 +9,13 @@
 typedef struct masu_bake_reader {
     const char *directory;        /* of the scene's file: relative names start there */
     const char *models_directory; /* what "@assimp/" stands for */
-    /* Shadows, occlusion and reflections only where they are asked for. */
+    /* Shadows, occlusion and reflections only if requested. */
     bool bare;
     masu_bake_description *out;
 } masu_bake_reader;
 
-/* Where a file is that the scene names, kept in the description's pool. Only models and pictures may
- * begin with "@assimp/". */
+/* The path of a file that the scene names, allocated in the description's pool. Only models and
+ * images may begin with "@assimp/". */
 const char *masu_bake_path(const masu_bake_reader *r, const char *name);
 const char *masu_bake_model_path(const masu_bake_reader *r, const char *name);
 
@@ -30,7 +30,7 @@ bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_bounce(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reader *r);
 
-/* A .sdf without a scene: where its parts are decides what is drawn and what the camera sees. */
+/* A .sdf without a scene: bounds of its parts give the drawn area and the camera. */
 bool masu_bake_describe_sdf(const masu_bake_options *options, masu_bake_description *out);
 
 /* A model's "material" and "materials". */

@@ -103,7 +103,8 @@ typedef struct masu_import {
     masu_bake_buffer nodes; /* masu_import_node */
     masu_bake_buffer skin_nodes; /* uint32_t: of each skin the node that shows it */
     masu_bake_content bent; /* meshes with bones, as they are bound: their mesh_parts are of it */
-    masu_bake_buffer influences; /* masu_bake_influence of each of its vertices; joints are bones, */
+    /* masu_bake_influence of each of its vertices; joints are bones, */
+    masu_bake_buffer influences;
                                  /* or their count: none */
 } masu_import;
 
@@ -120,15 +121,16 @@ float masu_import_clamped(double value, double low, double high);
 
 /* A material, read once; one that there is not is the default one. */
 const masu_import_given *masu_import_read_material(masu_import *m, unsigned index);
-/* The piece's number of it, times a colour (linear, or NULL). colored: its vertices have colours. */
+/* The piece's number of it, times a colour (linear, or NULL). colored: its vertices have
+ * colours. */
 uint32_t masu_import_material(masu_import *m, unsigned index, const double *color, bool colored);
 /* Of a colour that was chosen on a screen, the linear one. */
 double masu_import_decode_srgb(double c);
 /* Converts an aiMesh, once. */
 void masu_import_mesh(masu_import *m, unsigned index);
 void masu_import_report_losses(masu_import *m);
-/* Over all nodes. With `convert` their meshes are converted; without, then, instances and lights are
- * made. False: the nodes form a cycle, or are too many. */
+/* Over all nodes. With `convert` their meshes are converted; without, then, instances and lights
+ * are made. False: the nodes form a cycle, or are too many. */
 bool masu_import_walk(masu_import *m, bool convert);
 /* ---- assimp_skin.c ---- */
 
@@ -141,8 +143,8 @@ bool masu_import_bends(const masu_import *m, unsigned mesh);
 /* Converts its triangles into `bent`. */
 void masu_import_bent_mesh(masu_import *m, const struct aiMesh *mesh, masu_bake_triangles *triangles,
                            masu_bake_losses *lost);
-/* After the walk that made instances: meshes with bones become instances of their own, in their rest pose; nodes
- * that anything needs, skins and clips become sections of the piece. */
+/* After the walk that made instances: meshes with bones become instances of their own, in their
+ * rest pose; nodes that anything needs, skins and clips become sections of the piece. */
 void masu_import_live(masu_import *m);
 
 /* A file may hold meshes and no nodes: each is then shown once, where it is. */

@@ -1,5 +1,6 @@
-/* assimp_file.h: the files that Assimp opens: the model, and what that names as far as it may (bake/base/inside.h).
- * What lies elsewhere is not there for it, and one warning names the first. */
+/* assimp_file.h: the files that Assimp opens: the model, and what that names as far as it may
+ * (bake/base/inside.h). What lies elsewhere is not there for it, and one warning names the
+ * first. */
 #ifndef MASU_BAKE_ASSIMP_FILE_H
 #define MASU_BAKE_ASSIMP_FILE_H
 

@@ -128,8 +128,8 @@ static bool same_texture(const struct aiMaterial *m, enum aiTextureType a, enum 
            memcmp(x.data, y.data, (size_t)masu_import_length(&x)) == 0;
 }
 
-/* Whether the format itself says that the alpha of a picture is what is there of the surface: AC3D, and what Assimp
- * has a flag for. */
+/* Whether the format itself says that the alpha of a picture is what is there of the surface:
+ * AC3D, and what Assimp has a flag for. */
 static bool alpha_covers(const masu_import *m, const struct aiMaterial *from) {
     const char *dot = strrchr(m->path, '.');
     int flags = 0;
@@ -252,8 +252,8 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     double intensity = 1;
     get_factor(from, KEY(AI_MATKEY_EMISSIVE_INTENSITY), &intensity);
     if (get_color(from, KEY(AI_MATKEY_COLOR_EMISSIVE), c)) {
-        /* In older formats emission is mostly a way to brighten what is lit: the two were summed on the
-         * screen. Only what emits more than it reflects is a light. */
+        /* In older formats emission is mostly a way to brighten what is lit: the two were summed
+         * on the screen. Only what emits more than it reflects is a light. */
         double diffuse[4] = {0, 0, 0, 1};
         if (!linear && get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), diffuse) &&
             fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {

@@ -113,7 +113,8 @@ static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent,
         m->full = true;
 }
 
-/* A part for each colour, or one with colours at its vertices. Of glTF it is done already (gltf_mesh.c). */
+/* A part for each colour, or one with colours at its vertices. Of glTF it is done already
+ * (gltf_mesh.c). */
 static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent,
                         const masu_bake_triangles *all, masu_bake_losses *lost) {
     masu_bake_pool pool = {0};

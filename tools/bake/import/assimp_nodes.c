@@ -15,8 +15,8 @@ static bool same_set(const masu_import_set *g, const unsigned *meshes, unsigned 
     return g->count == count && memcmp(g->meshes, meshes, count * sizeof *meshes) == 0;
 }
 
-/* The primitives of an aiMesh, once more. Two primitives share no indices (src/scene/scene.c): when a mesh
- * is part of a second set, its indices are copied. */
+/* The primitives of an aiMesh, once more. Two primitives share no indices (src/scene/scene.c):
+ * when a mesh is part of a second set, its indices are copied. */
 static void add_parts(masu_import *m, unsigned mesh) {
     masu_bake_buffer *indices = &m->piece->section[MASU_BLOB_INDICES];
     for (uint32_t i = 0; i < m->mesh_parts[mesh].count; i++) {
@@ -77,8 +77,9 @@ static masu_bake_affine node_transform(const struct aiNode *node) {
     return a;
 }
 
-/* glTF gives intensities; a white matt surface has the luminance of the intensity over pi and the
- * squared distance. A range that is not given stays 0 until the factor of the placement is known. */
+/* glTF gives intensities; a white matt surface has the luminance of the intensity over pi and
+ * the squared distance. A range that is not given stays 0 until the factor of the placement is
+ * known. */
 static bool convert_light(const struct aiLight *from, const masu_bake_affine *space, masu_blob_light *to) {
     const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
     masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y,
@@ -148,8 +149,8 @@ static void convert_lights(masu_import *m, const struct aiNode *node, const masu
     }
 }
 
-/* As lights are: by the name of the node. What an aiCamera's angle is of, its importers do not agree on; most mean the
- * whole width. */
+/* As lights are: by the name of the node. What an aiCamera's angle is of, its importers do not
+ * agree on; most mean the whole width. */
 static void convert_cameras(masu_import *m, const struct aiNode *node, const masu_bake_affine *world) {
     const struct aiScene *s = m->source;
     int length = masu_import_length(&node->mName);

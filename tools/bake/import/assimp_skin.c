@@ -1,8 +1,10 @@
-/* assimp_skin.c: what of a file moves: nodes, bones and animations become nodes, skins and clips; see assimp.h.
+/* assimp_skin.c: what of a file moves: nodes, bones and animations become nodes, skins and clips;
+ * see assimp.h.
  *
- * A mesh with bones is kept as it is bound. Each node that shows it gets a copy of its own, an instance at the
- * file's origin: where its vertices are follows from the joints alone, as glTF has it, and they lie there as the
- * rest pose has them, for whoever looks at the scene before it moves. */
+ * A mesh with bones is kept as it is bound. Each node that shows it gets a copy of its own, an
+ * instance at the file's origin: where its vertices are follows from the joints alone, as glTF
+ * has it, and they lie there as the rest pose has them, for whoever looks at the scene before it
+ * moves. */
 #include "bake/import/assimp.h"
 #include "scene/skin.h"
 
@@ -56,7 +58,8 @@ static void add_weight(four *f, unsigned bone, double weight) {
     f->bones[k] = (uint16_t)bone;
 }
 
-/* 65535 together: what rounding leaves goes to the largest. Nothing at all: a bone behind the last. */
+/* 65535 together: what rounding leaves goes to the largest. Nothing at all: a bone behind the
+ * last. */
 static masu_bake_influence quantised(const four *f, unsigned bones) {
     masu_bake_influence out = {{(uint16_t)bones, 0, 0, 0}, {65535, 0, 0, 0}, 0};
     double sum = 0;
@@ -124,7 +127,8 @@ static uint32_t find_node(const masu_import *m, const struct aiString *name) {
     return MASU_BLOB_NONE;
 }
 
-/* The joints of a mesh: its bones, and one more for vertices without any, which stay with the node that shows it. */
+/* The joints of a mesh: its bones, and one more for vertices without any, which stay with the
+ * node that shows it. */
 static void add_joints(masu_import *m, const struct aiMesh *mesh, uint32_t shown_by) {
     for (unsigned b = 0; b <= mesh->mNumBones; b++) {
         masu_blob_joint joint = {.inverse_bind = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, .node = shown_by};
@@ -259,7 +263,8 @@ static void add_targets(masu_import *m, const origin *origins, masu_blob_skin *s
 
 /* ---- Parts ----------------------------------------------------------------------------------- */
 
-/* A part of a bent mesh, in the piece: its vertices at rest, its triangles. base: its joints among the skin's. */
+/* A part of a bent mesh, in the piece: its vertices at rest, its triangles. base: its joints
+ * among the skin's. */
 static bool copy_part(masu_import *m, const masu_blob_primitive *from, uint32_t first_joint,
                       uint32_t base, const struct aiMesh *mesh, masu_bake_buffer *origins) {
     masu_bake_content *to = m->piece;
@@ -318,7 +323,8 @@ static void back_to(masu_bake_content *c, const mark *here) {
         c->section[kind].bytes = here->bytes[kind];
 }
 
-/* Of a node that shows meshes with bones: their joints together are a skin. False: nothing of it can be drawn. */
+/* Of a node that shows meshes with bones: their joints together are a skin. False: nothing of it
+ * can be drawn. */
 static bool make_skin(masu_import *m, uint32_t node, masu_blob_skin *skin, uint32_t *instance,
                       masu_bake_buffer *origins) {
     masu_bake_content *c = m->piece;
@@ -362,7 +368,8 @@ static bool shows_bent(const masu_import *m, const struct aiNode *node) {
     return false;
 }
 
-/* Their nodes are those behind all of the file's, in the order of the skins: the instance of each. */
+/* Their nodes are those behind all of the file's, in the order of the skins: the instance of
+ * each. */
 static void make_skins(masu_import *m, masu_bake_buffer *instances) {
     for (uint32_t n = 0; n < node_count(m); n++) {
         masu_blob_skin skin;
@@ -476,7 +483,8 @@ static int by_node(const void *a, const void *b) {
     return x->order < y->order ? -1 : 1;
 }
 
-/* Of the targets of the skin that a node shows. Assimp's name may have "*" and a number behind the node's. */
+/* Of the targets of the skin that a node shows. Assimp's name may have "*" and a number behind
+ * the node's. */
 static void add_weights(masu_import *m, const struct aiMeshMorphAnim *from, double tick, masu_bake_buffer *tracks) {
     struct aiString name = from->mName;
     char *star = memchr(name.data, '*', (size_t)masu_import_length(&name));

@@ -1,5 +1,5 @@
-/* gltf.c: a glTF file is opened: its containers and buffers, what it requires, and notes of what is not read;
- * see gltf.h. */
+/* gltf.c: a glTF file is opened: its containers and buffers, what it requires, and notes of what
+ * is not read; see gltf.h. */
 #include "bake/import/gltf.h"
 #include "bake/import/picture_path.h"
 

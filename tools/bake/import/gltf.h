@@ -49,7 +49,8 @@ typedef struct masu_gltf_material {
     bool blends, unlit;
 } masu_gltf_material;
 
-/* A primitive with one skin and set of morph weights, as one aiMesh or, of many colours, several. */
+/* A primitive with one skin and set of morph weights, as one aiMesh or, of many colours,
+ * several. */
 typedef struct masu_gltf_made {
     struct masu_gltf_made *next;
     json_int_t skin;       /* -1: none */
@@ -129,14 +130,15 @@ bool masu_gltf_size(masu_gltf *g, const json_t *of, const char *name, uint64_t *
 /* An index below `count`; -1: absent. False: failed. */
 bool masu_gltf_index(masu_gltf *g, const json_t *of, const char *name, size_t count, json_int_t *out);
 const json_t *masu_gltf_extension(masu_gltf *g, const json_t *of, const char *name);
-/* An element of an array of the file that masu_gltf_index has checked; NULL and failed: not an object. */
+/* An element of an array of the file that masu_gltf_index has checked; NULL and failed: not an
+ * object. */
 const json_t *masu_gltf_element(masu_gltf *g, const char *array, json_int_t index);
 size_t masu_gltf_count(const masu_gltf *g, const char *array);
 
 /* ---- gltf_access.c ---- */
 
-/* The numbers of an accessor, integers that are normalised as fractions. components: what it must have, or 0.
- * NULL: failed. */
+/* The numbers of an accessor, integers that are normalised as fractions. components: what it
+ * must have, or 0. NULL: failed. */
 float *masu_gltf_floats(masu_gltf *g, json_int_t accessor, unsigned components, uint32_t *count,
                         unsigned *found);
 /* Of unsigned integers alone. */
@@ -168,8 +170,8 @@ void masu_gltf_draco_close(masu_gltf_draco *draco);
 /* ---- the others; false: failed ---- */
 
 bool masu_gltf_read_materials(masu_gltf *g);
-/* The number that an aiMesh has for a material of the file under a colour (linear, with alpha); -1: the default.
- * colored: MASU_BAKE_COLORED_*, of its vertices. */
+/* The number that an aiMesh has for a material of the file under a colour (linear, with alpha);
+ * -1: the default. colored: MASU_BAKE_COLORED_*, of its vertices. */
 unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4], int colored);
 /* The aiMeshes of a mesh of the file under a skin and a node's morph weights. */
 bool masu_gltf_make_mesh(masu_gltf *g, json_int_t mesh, json_int_t skin, const json_t *weights,

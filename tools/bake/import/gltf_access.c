@@ -1,7 +1,7 @@
 /* gltf_access.c: buffer views and accessors of a glTF file become numbers; see gltf.h.
  *
- * Sizes in the file are at most 2^53 (gltf_json.c), so that sums of two of them do not overflow; products are
- * divided out. */
+ * Sizes in the file are at most 2^53 (gltf_json.c), so that sums of two of them do not overflow;
+ * products are divided out. */
 #include "bake/import/gltf.h"
 
 #include <meshoptimizer.h>

@@ -1,16 +1,20 @@
-/* gltf_material.c: materials of a glTF file and the names of their pictures; see gltf.h.
- * Over 700 lines: a reader for each extension of materials, which share how they read textures.
+/* gltf_material.c: materials of a glTF file and the names of their pictures; see gltf.h. Over 700
+ * lines: a reader for each extension of materials, which share how they read textures.
  *
- * A mesh has one set of texture coordinates here. It is that of the base colour, else of the first map that there
- * is, with its transform worked in (gltf_mesh.c); and a second one for opaque materials, of the first map that wants
- * other coordinates. A map that wants neither is left out, with a note; but where all but colour and emission are repeated so many times more often, the material's detail says it.
+ * A mesh has one set of texture coordinates here. It is that of the base colour, else of the first
+ * map that there is, with its transform worked in (gltf_mesh.c); and a second one for opaque
+ * materials, of the first map that wants other coordinates. A map that wants neither is left out,
+ * with a note; but where all but colour and emission are repeated so many times more often, the
+ * material's detail says it.
  *
- * A coat has the mesh's normal where it names no picture, and one picture of normals is what a surface has: coat and base
- * have the same one, or only one of them has any; of two different ones the coat's is left out, with a note.
+ * A coat has the mesh's normal where it names no picture, and one picture of normals is what a
+ * surface has: coat and base have the same one, or only one of them has any; of two different ones
+ * the coat's is left out, with a note.
  *
- * What has no counterpart is brought near, and a note says so: glass of KHR_materials_transmission
- * is thin, what shines through has its base colour and what KHR_materials_volume leaves of it; unlit surfaces emit their colour; specular
- * and glossiness become metallic and roughness, as the appendix of that extension has it. */
+ * What has no counterpart is brought near, and a note says so: glass of
+ * KHR_materials_transmission is thin, what shines through has its base colour and what
+ * KHR_materials_volume leaves of it; unlit surfaces emit their colour; specular and glossiness
+ * become metallic and roughness, as the appendix of that extension has it. */
 #include "bake/import/gltf.h"
 
 #include "scene/material.h"
@@ -94,8 +98,8 @@ static bool read_sampler(masu_gltf *g, const json_t *about, texture *t) {
     return true;
 }
 
-/* The picture's coordinates are the set's, scaled, then turned, then moved. v is down the picture, and a positive
- * angle turns counter-clockwise as one sees it. */
+/* The picture's coordinates are the set's, scaled, then turned, then moved. v is down the
+ * picture, and a positive angle turns counter-clockwise as one sees it. */
 static bool read_transform(masu_gltf *g, const json_t *info, texture *t) {
     const json_t *about = masu_gltf_extension(g, info, "KHR_texture_transform");
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0, set = t->set;
@@ -183,7 +187,8 @@ static uint8_t slot_of(int map) {
     return slots[map];
 }
 
-/* A second set for maps that do not use the first: that of the first of them. What is blended has none. */
+/* A second set for maps that do not use the first: that of the first of them. What is blended
+ * has none. */
 static void use_second(masu_gltf *g, const maps *m, int map, const texture **second, masu_gltf_material *out, bool *used) {
     const texture *t = &m->all[map];
     double own[2];
@@ -402,8 +407,8 @@ static bool read_emission(masu_gltf *g, const json_t *about, masu_gltf_material 
     return true;
 }
 
-/* Reflectance of a dielectric at normal incidence: that of its index of refraction times the specular colour, at most 1,
- * times the specular factor. */
+/* Reflectance of a dielectric at normal incidence: that of its index of refraction times the
+ * specular colour, at most 1, times the specular factor. */
 static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material *to, maps *m) {
     const json_t *specular = masu_gltf_extension(g, about, "KHR_materials_specular");
     const json_t *refraction = masu_gltf_extension(g, about, "KHR_materials_ior");
@@ -416,7 +421,8 @@ static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material 
         return false;
     if (!specular && !refraction) return true;
     factor = (double)limited(g, factor, 0, 1, "specularFactor");
-    double root = (index - 1) / (index + 1), reflectance = index > 0 ? root * root : 1; /* 0 stands for infinity */
+    /* 0 stands for infinity */
+    double root = (index - 1) / (index + 1), reflectance = index > 0 ? root * root : 1;
     if (!(index == 0 || index >= 1)) {
         masu_gltf_note_one(g, "materials have an \"ior\" below 1: taken for 1", g->where);
         reflectance = 0;
@@ -462,7 +468,8 @@ static bool read_anisotropy(masu_gltf *g, const json_t *about, masu_blob_materia
     return true;
 }
 
-/* A material has one lobe beyond the plain ones (blob.h): a coat comes first, then sheen, anisotropy, colour. */
+/* A material has one lobe beyond the plain ones (blob.h): a coat comes first, then sheen,
+ * anisotropy, colour. */
 static void settle_lobes(masu_gltf *g, masu_blob_material *to, maps *m) {
     float *hue = to->specular_color, *sheen = to->sheen_color;
     texture *maps_of[2] = {&m->all[MASU_BAKE_LOBE_COLOR], &m->all[MASU_BAKE_LOBE_STRENGTH]};
@@ -556,8 +563,8 @@ static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to,
            read_texture(g, coat, "clearcoatRoughnessTexture", &m->all[MASU_BAKE_COAT_ROUGHNESS]);
 }
 
-/* KHR_materials_volume: the light that is left after the thickness, as a factor of each surface that a ray crosses: one
- * if back faces are culled, else two. And its refraction. */
+/* KHR_materials_volume: the light that is left after the thickness, as a factor of each surface
+ * that a ray crosses: one if back faces are culled, else two. And its refraction. */
 static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *to) {
     const json_t *volume = masu_gltf_extension(g, about, "KHR_materials_volume");
     const json_t *refraction = masu_gltf_extension(g, about, "KHR_materials_ior");
@@ -572,7 +579,8 @@ static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *t
         masu_gltf_note_one(g, "materials have a thickness and a metallic factor: they do not refract", g->where);
     } else if (thickness > 0) {
         to->thickness = limited(g, thickness, 0, 65504, "thicknessFactor");
-        to->ior = index == 0 ? 1000 : limited(g, fmax(index, 1), 1, 1000, "ior"); /* 0 stands for infinity */
+        /* 0 stands for infinity */
+        to->ior = index == 0 ? 1000 : limited(g, fmax(index, 1), 1, 1000, "ior");
     }
     if (!(thickness > 0 && distance > 0)) return true;
     limit_all(g, left, 3, 1, "attenuationColor");
@@ -580,7 +588,8 @@ static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *t
     return true;
 }
 
-/* Of what shines through a share is coloured; the alpha of the base colour counts where it is blended anyway. */
+/* Of what shines through a share is coloured; the alpha of the base colour counts where it is
+ * blended anyway. */
 static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
     const json_t *through = masu_gltf_extension(g, about, "KHR_materials_transmission");
     masu_blob_material *to = &out->given.material;
@@ -650,8 +659,8 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
     return !masu_gltf_failed(g);
 }
 
-/* Specular and glossiness become metallic and roughness by an inverse that is not exact: beside materials that are
- * metallic and roughness already, the same surface may look different. */
+/* Specular and glossiness become metallic and roughness by an inverse that is not exact: beside
+ * materials that are metallic and roughness already, the same surface may look different. */
 static void note_mixture(masu_gltf *g) {
     size_t count = masu_gltf_count(g, "materials"), glossy = 0;
     const char *first = NULL;
@@ -716,7 +725,8 @@ unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4
     }
     size_t count = g->given.bytes / sizeof made;
     const masu_import_given *all = (const masu_import_given *)(const void *)g->given.data;
-    for (size_t i = count; i > 0 && i + 256 > count; i--) { /* the last few: what one mesh asks for */
+    /* the last few: what one mesh asks for */
+    for (size_t i = count; i > 0 && i + 256 > count; i--) {
         if (all[i - 1].name == made.name && memcmp(&all[i - 1].maps, &made.maps, sizeof made.maps) == 0 &&
             memcmp(&all[i - 1].material, to, sizeof *to) == 0)
             return (unsigned)(i - 1);

@@ -2,7 +2,8 @@
  *
  * COLOR_0 becomes materials where it can (vertex_color.h), else colours of vertices.
  *
- * Morph targets of models that move become aiAnimMeshes; of others the weights are those of the rest pose. Where normals are missing, faces are flat, as glTF wants it. */
+ * Morph targets of models that move become aiAnimMeshes; of others the weights are those of the
+ * rest pose. Where normals are missing, faces are flat, as glTF wants it. */
 #include "bake/import/gltf.h"
 #include "bake/import/vertex_color.h"
 
@@ -43,8 +44,8 @@ static bool unpacked_id(masu_gltf *g, const source *s, const char *name, json_in
     return !s->packed || masu_gltf_index(g, s->packed, name, 1u << 30, id);
 }
 
-/* One with fewer elements than there are positions is left out. components: least, most. NULL without failure: there
- * is none. */
+/* One with fewer elements than there are positions is left out. components: least, most. NULL
+ * without failure: there is none. */
 static float *attribute(masu_gltf *g, const source *s, const char *name, unsigned least, unsigned most,
                         uint32_t wanted, uint32_t *count, unsigned *components) {
     json_int_t index = -1, id = -1;
@@ -325,7 +326,8 @@ static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct a
     mesh->mNumBones = count;
     struct aiBone *bones = masu_gltf_take(g, count, sizeof *bones);
     for (unsigned b = 0; b < count; b++) {
-        uint64_t node = (uint64_t)json_integer_value(json_array_get(joints, b)); /* checked with the nodes */
+        /* checked with the nodes */
+        uint64_t node = (uint64_t)json_integer_value(json_array_get(joints, b));
         struct aiMatrix4x4 *t = &bones[b].mOffsetMatrix;
         bones[b].mName = g->nodes[node].mName;
         bones[b].mWeights = masu_gltf_take(g, sums[b], sizeof *bones[b].mWeights);

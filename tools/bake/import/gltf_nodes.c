@@ -1,8 +1,9 @@
-/* gltf_nodes.c: the nodes of a glTF file's scene become aiNodes, with their meshes, instances and lights; see
- * gltf.h.
+/* gltf_nodes.c: the nodes of a glTF file's scene become aiNodes, with their meshes, instances and
+ * lights; see gltf.h.
  *
- * Skins, clips and lights find nodes by name in an aiScene, so names are made unique here: the first of a name
- * keeps it, others get their number behind it; who has none is called "nodes[3]". */
+ * Skins, clips and lights find nodes by name in an aiScene, so names are made unique here: the
+ * first of a name keeps it, others get their number behind it; who has none is called
+ * "nodes[3]". */
 #include "bake/import/gltf.h"
 #include "bake/scene/sun.h"
 

@@ -20,8 +20,8 @@ typedef struct masu_bake_wanted {
     const char *variant; /* of a glTF file's materials, or NULL */
 } masu_bake_wanted;
 
-/* Fills `piece`, which is not to be believed before it has been checked. Leaves warnings, one per line,
- * and on failure an error. */
+/* Fills `piece`, which is not to be believed before it has been checked. Leaves warnings, one
+ * per line, and on failure an error. */
 void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece,
                           masu_bake_buffer *warnings, masu_bake_buffer *error);
 

@@ -66,7 +66,8 @@ static bool is_there(const char *folder, size_t folder_bytes, const char *name, 
     return *name && access((const char *)out->data, F_OK) == 0;
 }
 
-/* Cuts the last part off a path of `*bytes` and says whether it is `wanted` (NULL: whatever it is). */
+/* Cuts the last part off a path of `*bytes` and says whether it is `wanted` (NULL: whatever it
+ * is). */
 static bool step_up(const char *path, size_t *bytes, const char *wanted) {
     size_t end = *bytes, at = end;
     while (at && path[at - 1] != '/') at--;

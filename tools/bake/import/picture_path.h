@@ -17,12 +17,13 @@
 
 #include <stdbool.h>
 
-/* Puts the path, with its NUL, into `out`: the first of these that is there and, of 1 to 3, that the model may name
- * (base/inside.h); else the first. False: that one is there, and must not be read. name: not of a picture inside the
- * model; a path or a file: URI. */
+/* Puts the path, with its NUL, into `out`: the first of these that is there and, of 1 to 3, that
+ * the model may name (base/inside.h); else the first. False: that one is there, and must not be
+ * read. name: not of a picture inside the model; a path or a file: URI. */
 bool masu_bake_picture_path(const char *model, const char *name, masu_bake_buffer *out);
 
-/* "%20" becomes a space; never a NUL. '\' becomes '/'. to: as large as from, of which it may be the same. */
+/* "%20" becomes a space; never a NUL. '\' becomes '/'. to: as large as from, of which it may be
+ * the same. */
 void masu_bake_resolve_uri(char *to, const char *from);
 /* Every "%20" becomes its byte, NUL too. Returns how many bytes; to: as large as from. */
 size_t masu_bake_resolve_escapes(unsigned char *to, const char *from);

@@ -1,7 +1,8 @@
 /* vertex_color.h: colours of vertices become materials where that costs nothing.
  *
- * The triangles of a mesh are grouped by colour; each group gets a material of its colour, if these are up
- * to 64 colours that do not change within a triangle. Other meshes keep the colours of their vertices. */
+ * The triangles of a mesh are grouped by colour; each group gets a material of its colour, if
+ * these are up to 64 colours that do not change within a triangle. Other meshes keep the colours
+ * of their vertices. */
 #ifndef MASU_BAKE_VERTEX_COLOR_H
 #define MASU_BAKE_VERTEX_COLOR_H
 

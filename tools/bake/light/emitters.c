@@ -37,7 +37,8 @@ typedef struct corners {
 
 /* ---- Parts ----------------------------------------------------------------------------------- */
 
-static const masu_bake_vec3 *sorted_at; /* of qsort's comparison: this program has one thread here */
+/* of qsort's comparison: this program has one thread here */
+static const masu_bake_vec3 *sorted_at;
 
 static int by_position(const void *a, const void *b) {
     return memcmp(&sorted_at[*(const uint32_t *)a], &sorted_at[*(const uint32_t *)b], sizeof *sorted_at);
@@ -122,8 +123,8 @@ static void try_axes(const corners *c, uint32_t n, masu_bake_vec3 center, const 
     *best = (box){{axis[0], axis[1]}, size};
 }
 
-/* Turns two axes about the third to where the box is smallest. A side of that box is along an edge of the part,
- * of which many are not all tried. */
+/* Turns two axes about the third to where the box is smallest. A side of that box is along an
+ * edge of the part, of which many are not all tried. */
 static void tighten(const corners *c, uint32_t n, part *p, const masu_bake_vec3 flat[2]) {
     box best = {{flat[0], flat[1]}, DBL_MAX};
     size_t tried = 0;

@@ -1,10 +1,11 @@
 /* environment.c: see environment.h.
  *
  * Mip m is for roughness m / (mips - 1): the picture averaged by the lobe of GGX that a mirror
- * direction sees from above, weighted by the cosine (Karis, Real Shading in Unreal Engine 4, SIGGRAPH
- * 2013 course). The lobe is sampled by importance; each sample looks up a mip of the unblurred map as
- * coarse as the samples lie apart (Krivanek and Colbert, Real-time Shading with Filtered Importance
- * Sampling, EGSR 2008), so that a bright spot is neither missed nor hit alone. */
+ * direction sees from above, weighted by the cosine (Karis, Real Shading in Unreal Engine 4,
+ * SIGGRAPH 2013 course). The lobe is sampled by importance; each sample looks up a mip of the
+ * unblurred map as coarse as the samples lie apart (Krivanek and Colbert, Real-time Shading with
+ * Filtered Importance Sampling, EGSR 2008), so that a bright spot is neither missed nor hit
+ * alone. */
 #include "bake/light/environment.h"
 
 #include "bake/base/file.h"

@@ -34,8 +34,9 @@ void masu_bake_panorama_at(const masu_bake_panorama *p, const double direction[3
 void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
                                masu_bake_content *content);
 
-/* The direction in the middle of a texel of the octahedron's square; what a texel holds; what the
- * blob's mips give for a direction and a roughness, as shaders/light/environment.glsl looks it up. */
+/* The direction in the middle of a texel of the octahedron's square; what a texel holds; what
+ * the blob's mips give for a direction and a roughness, as shaders/light/environment.glsl looks
+ * it up. */
 void masu_bake_octahedral(double x, double y, double out[3]);
 uint32_t masu_bake_pack_9995(const double rgb[3]);
 void masu_bake_unpack_9995(uint32_t texel, double out[3]);

@@ -1,5 +1,5 @@
-/* field.c: see field.h. A ray marches each part by itself, within the part's box, and always the one that it may
- * meet first: so most parts are asked once or never. */
+/* field.c: see field.h. A ray marches each part by itself, within the part's box, and always the
+ * one that it may meet first: so most parts are asked once or never. */
 #include "bake/light/field.h"
 #include "bake/base/file.h"
 #include "bake/shader/sdf.h"

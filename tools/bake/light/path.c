@@ -23,9 +23,9 @@ static uint64_t mixed(uint64_t x) {
 
 static float unit(uint64_t bits) { return (float)(bits >> 40) * 0x1p-24f; }
 
-/* Pairs 0 and 1: Kronecker sequences, shifted. Their steps are the first two powers of 1 / r, r the
- * real root of r^3 = r + 1 for one, of r^4 = r + 1 for the other (Roberts 2018). From pair 2 on, where
- * low discrepancy in so many dimensions gains nothing, plain random numbers. */
+/* Pairs 0 and 1: Kronecker sequences, shifted. Their steps are the first two powers of 1 / r, r
+ * the real root of r^3 = r + 1 for one, of r^4 = r + 1 for the other (Roberts 2018). From pair 2
+ * on, where low discrepancy in so many dimensions gains nothing, plain random numbers. */
 void masu_path_sample(uint64_t seed, uint32_t index, uint32_t pair, float out[2]) {
     static const uint64_t steps[2][2] = {{0xC13FA9A902A6328Fu, 0x91E10DA5C79E7B1Cu},
                                          {0xD1B54A32D192ED03u, 0xABC98388FB8FAC02u}};

@@ -1,9 +1,9 @@
-/* path.h: diffuse light along random paths through a traced scene, each source apart: what comes
- * of a sky, of emissive surfaces, and of each of some suns. Offline: light probes and the truth that
+/* path.h: diffuse light along random paths through a traced scene, each source apart: what comes of
+ * a sky, of emissive surfaces, and of each of some suns. Offline: light probes and the truth that
  * they are held against.
  *
- * Numbers of a path come from its index and the item's seed alone, so that results do not depend on
- * how the work is shared out. */
+ * Numbers of a path come from its index and the item's seed alone, so that results do not depend
+ * on how the work is shared out. */
 #ifndef MASU_BAKE_PATH_H
 #define MASU_BAKE_PATH_H
 
@@ -34,8 +34,9 @@ void masu_path_cosine(const float n[3], const float u[2], float out[3]);
 /* Any direction, evenly. */
 void masu_path_sphere(const float u[2], float out[3]);
 
-/* Adds to sum[set][3], times `scale`, the radiance that arrives at origin from direction, without the
- * suns' own. `first`: filled with the first surface; t below 0 if there is none. Returns rays. */
+/* Adds to sum[set][3], times `scale`, the radiance that arrives at origin from direction,
+ * without the suns' own. `first`: filled with the first surface; t below 0 if there is none.
+ * Returns rays. */
 uint64_t masu_path_radiance(const masu_bake_trace *trace, const masu_path_lights *lights,
                             const float origin[3], const float direction[3], uint64_t seed,
                             uint32_t index, float scale, float (*sum)[3], masu_bake_hit *first);

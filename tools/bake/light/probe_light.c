@@ -52,9 +52,9 @@ void masu_probe_basis(const float d[3], float y[9]) {
     y[8] = 0.546274f * (d[0] * d[0] - d[1] * d[1]);
 }
 
-/* The interpolant through the suns with the kernel 1 - angle / pi, which is positive definite on the
- * sphere and along an arc is linear from sun to sun; what is below 0 away from them left out, then to
- * a sum of 1. */
+/* The interpolant through the suns with the kernel 1 - angle / pi, which is positive definite on
+ * the sphere and along an arc is linear from sun to sun; what is below 0 away from them left
+ * out, then to a sum of 1. */
 void masu_probe_sun_weights(const masu_blob_probes *p, const float direction[3],
                             float weights[MASU_PROBE_SUNS_MAX]) {
     float near[MASU_PROBE_SUNS_MAX] = {0}, sum = 0;
@@ -121,8 +121,9 @@ void masu_probe_light(const masu_blob_probes *p, const uint32_t *data, const mas
 
 /* ---- lookup ---- */
 
-/* Mean and mean square of the distance from a probe along d, in units of a cell's diagonal: bilinear
- * in the probe's octahedral map, whose border of one texel repeats what lies across the edge. */
+/* Mean and mean square of the distance from a probe along d, in units of a cell's diagonal:
+ * bilinear in the probe's octahedral map, whose border of one texel repeats what lies across the
+ * edge. */
 static void distances(const masu_blob_probes *p, const uint32_t *map, const float d[3],
                       float out[2]) {
     uint32_t side = p->visibility + 2;

@@ -27,8 +27,8 @@ void masu_probe_sun_weights(const masu_blob_probes *probes, const float directio
 void masu_probe_light(const masu_blob_probes *probes, const uint32_t *data,
                       const masu_probe_sky *light, uint32_t *lit);
 
-/* Irradiance / pi at a surface point with that normal. Returns how far the grid answers for it: 1 in
- * its bounds, falling to 0 within a cell around them. */
+/* Irradiance / pi at a surface point with that normal. Returns how far the grid answers for it:
+ * 1 in its bounds, falling to 0 within a cell around them. */
 float masu_probe_lookup(const masu_blob_probes *probes, const uint32_t *data, const uint32_t *lit,
                         const float position[3], const float normal[3], float out[3]);
 

@@ -15,8 +15,9 @@
 #define PROBES_WISHED 2048.0
 #define COEFFICIENTS 27u
 #define DISTANCE_MOST 1.5f /* of a cell's diagonal: what is farther hides nothing in a cell */
-/* A probe from which more of the rays than this meet the backs of surfaces is inside of something; and so is
- * one that is this near to a surface, in metres: its map would not tell the two sides apart. */
+/* A probe from which more of the rays than this meet the backs of surfaces is inside of
+ * something; and so is one that is this near to a surface, in metres: its map would not tell the
+ * two sides apart. */
 #define BACKS_MOST 0.25f
 #define FACE_NEAREST 1e-3f
 /* Rays of a live probe: the lobes of its map are narrow. */
@@ -278,7 +279,8 @@ static void trace_probe(void *context, uint32_t item) {
     atomic_fetch_add(&w->rays, count);
 }
 
-/* Probes inside of things take the mean of those around them, round after round. Returns how many. */
+/* Probes inside of things take the mean of those around them, round after round. Returns how
+ * many. */
 static uint64_t fill_invalid(work *w) {
     const masu_blob_probes *g = w->grid;
     uint32_t count = g->counts[0] * g->counts[1] * g->counts[2];

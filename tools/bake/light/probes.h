@@ -35,7 +35,8 @@ typedef struct masu_bake_probe_report {
 
 masu_bake_probe_settings masu_bake_probe_defaults(void);
 
-/* Appends PROBES and PROBE_DATA; of live probes without baked light maps of distances alone. Textures have been made, if there are any. False after reporting. */
+/* Appends PROBES and PROBE_DATA; of live probes without baked light maps of distances alone.
+ * Textures have been made, if there are any. False after reporting. */
 bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_settings *settings,
                            const masu_bake_trace *trace, masu_bake_probe_report *report);
 
@@ -47,8 +48,8 @@ typedef struct masu_bake_probe_error {
 
 #define MASU_BAKE_PROBE_ERRORS 48u
 
-/* Fills what the grid's light is off by from path-traced truth at `points` surface points (fewer are
- * left where the grid shows fewer), and returns how many rows there are. */
+/* Fills what the grid's light is off by from path-traced truth at `points` surface points (fewer
+ * are left where the grid shows fewer), and returns how many rows there are. */
 uint32_t masu_bake_judge_probes(const masu_bake_content *content,
                                 const masu_bake_probe_settings *settings,
                                 const masu_bake_trace *trace, uint32_t points, uint32_t rays,

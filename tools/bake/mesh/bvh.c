@@ -196,8 +196,8 @@ static void fill_report(const baker *b) {
     r->cost = r->triangles ? b->cost / (double)r->triangles : 0;
 }
 
-/* The least roughness that a material may have somewhere. Small relief changes it, but not below what its
- * facets have. */
+/* The least roughness that a material may have somewhere. Small relief changes it, but not below
+ * what its facets have. */
 static float least_of(const masu_bake_content *content, const masu_blob_material *m) {
     float roughness = m->roughness * masu_bake_trace_least(content, m);
     if (m->meso != MASU_BLOB_NONE) {

@@ -1,10 +1,11 @@
 /* creases.c: normals of triangles that came without any; see creases.h.
  *
- * Corners at the same position, bit for bit, are found by sorting them; whether vertices are shared says nothing: of some
- * formats all are, of others none. The normal of a corner is the sum of the faces around it that meet its own at less than
- * the crease angle, weighted by their angles there (Thuermer and Wuethrich 1998: no other weight is free of how a polygon was
- * cut into triangles). The importer's own step is not used: it takes for granted that no vertex is shared, and
- * gives a cube of eight vertices the normals of whichever face came last. */
+ * Corners at the same position, bit for bit, are found by sorting them; whether vertices are
+ * shared says nothing: of some formats all are, of others none. The normal of a corner is the
+ * sum of the faces around it that meet its own at less than the crease angle, weighted by their
+ * angles there (Thuermer and Wuethrich 1998: no other weight is free of how a polygon was cut
+ * into triangles). The importer's own step is not used: it takes for granted that no vertex is
+ * shared, and gives a cube of eight vertices the normals of whichever face came last. */
 #include "bake/mesh/creases.h"
 
 #include <math.h>
@@ -14,7 +15,8 @@
 /* cos(60 degrees), less what rounding takes: the sides of a prism of six meet at 60. */
 #define CREASE 0.4999
 
-/* Each corner looks at all others of its position; where there are more, which no surface has, at none: time stays bounded. */
+/* Each corner looks at all others of its position; where there are more, which no surface has,
+ * at none: time stays bounded. */
 #define AROUND_MAX 512
 
 typedef struct corner {
@@ -68,7 +70,8 @@ void masu_bake_creased_normals(const masu_bake_triangles *t, const uint32_t *cor
     corner *sorted = masu_bake_allocate((size_t)count * sizeof *sorted);
     for (uint64_t i = 0; i < count; i += 3) measure(t, corners + i, &faces[i / 3]);
     for (uint64_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) sorted[i].position[k] = t->positions[3 * (size_t)corners[i] + (size_t)k] + 0; /* -0 is 0 */
+        /* -0 is 0 */
+        for (int k = 0; k < 3; k++) sorted[i].position[k] = t->positions[3 * (size_t)corners[i] + (size_t)k] + 0;
         sorted[i].at = (uint32_t)i;
     }
     qsort(sorted, (size_t)count, sizeof *sorted, by_position);

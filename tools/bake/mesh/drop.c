@@ -1,8 +1,9 @@
 /* drop.c: see drop.h.
  *
- * Two height fields over the model's box, seen from above: the lowest of the model and the highest of what is below. A
- * triangle gives its height at the middles of the cells that it covers, and its vertices theirs to the cells that they
- * are in, so that nothing is lost between the middles. The least gap of any cell is how far the model falls. */
+ * Two height fields over the model's box, seen from above: the lowest of the model and the
+ * highest of what is below. A triangle gives its height at the middles of the cells that it
+ * covers, and its vertices theirs to the cells that they are in, so that nothing is lost between
+ * the middles. The least gap of any cell is how far the model falls. */
 #include "bake/mesh/drop.h"
 
 #include <stdlib.h>

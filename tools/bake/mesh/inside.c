@@ -1,12 +1,14 @@
 /* inside.c: boxes inside of a mesh's closed parts. A closed part has a winding number at every
- * point off its surface, constant wherever the surface is not crossed. A box that no triangle of the
- * part touches and whose middle is wrapped around is inside as a whole, so each ray from outside
- * meets the part before the box. Boxes grow from a few seeds, face by face, as long as that holds.
+ * point off its surface, constant wherever the surface is not crossed. A box that no triangle of
+ * the part touches and whose middle is wrapped around is inside as a whole, so each ray from
+ * outside meets the part before the box. Boxes grow from a few seeds, face by face, as long as that
+ * holds.
  *
- * Tried in thought and left: surfaces that meshoptimizer has simplified. They cut corners outwards as
- * well as inwards, and moving them inwards by their error folds them where walls are thin; nothing of
- * them passes the test that boxes pass by construction. Left out too, since the renderer draws boxes
- * alone: a mesh's own triangles where they are few, though they would serve open walls. */
+ * Tried in thought and left: surfaces that meshoptimizer has simplified. They cut corners
+ * outwards as well as inwards, and moving them inwards by their error folds them where walls are
+ * thin; nothing of them passes the test that boxes pass by construction. Left out too, since the
+ * renderer draws boxes alone: a mesh's own triangles where they are few, though they would serve
+ * open walls. */
 #include "bake/mesh/occluders.h"
 #include "bake/mesh/surface.h"
 
@@ -121,8 +123,8 @@ static bool half_way(const solid *s, size_t triangle, double side, vec3 *out) {
     return nearest < DBL_MAX;
 }
 
-/* The best box of one closed part: from the middle, from the middles of the eighths, and from inside
- * of some triangles, since a ring's middle is not in it. */
+/* The best box of one closed part: from the middle, from the middles of the eighths, and from
+ * inside of some triangles, since a ring's middle is not in it. */
 static bool box_in(const solid *s, masu_bake_box *best) {
     bool found = false;
     vec3 size = masu_bake_sub(s->box.high, s->box.low);

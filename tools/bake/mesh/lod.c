@@ -92,8 +92,8 @@ static masu_bake_surface surface_of(const source *s, const form *f, uint32_t mat
     return made;
 }
 
-/* A part that is gone, or far from what is left of its material, is seen as a spot of another colour, at most as
- * large as the part. */
+/* A part that is gone, or far from what is left of its material, is seen as a spot of another
+ * colour, at most as large as the part. */
 static double measure_look(const source *s, const look *l, const form *f, double limit) {
     masu_bake_surface coarse = surface_of(s, f, l->material);
     double error = masu_bake_surface_deviation(&coarse, &l->all, limit);

@@ -1,8 +1,8 @@
-/* merge.c: static geometry of many small meshes becomes a few: one per material and cell of a
- * grid, so that a track of 3,900 meshes of 18 triangles is drawn by hundreds of draws instead of
+/* merge.c: static geometry of many small meshes becomes a few: one per material and cell of a grid,
+ * so that a track of 3,900 meshes of 18 triangles is drawn by hundreds of draws instead of
  * thousands and each of them can still be culled. Cells, not whole materials: a mesh that is
- * everywhere is never outside the view. The origin is in the middle of a cell: a model around it that
- * is smaller than a cell becomes one mesh per material.
+ * everywhere is never outside the view. The origin is in the middle of a cell: a model around it
+ * that is smaller than a cell becomes one mesh per material.
  *
  * Vertices keep their bytes and texture coordinates but for place and normal, which move to the
  * model's space. */

@@ -1,6 +1,6 @@
 /* occluders.c: see occluders.h. That a box lies inside of what the mesh hides is proven,
- * triangle by triangle, but for boxes that the scene's file gives: those are its word. For LODs those
- * are proven too. */
+ * triangle by triangle, but for boxes that the scene's file gives: those are its word. For LODs
+ * those are proven too. */
 #include "bake/mesh/occluders.h"
 #include "bake/mesh/surface.h"
 #include "bake/scene/skin.h"
@@ -86,7 +86,8 @@ bool masu_bake_is_box(const masu_bake_content *content, uint32_t mesh, masu_bake
     return true;
 }
 
-/* Six times the volume inside of what it shows, where its triangles turn counter-clockwise seen from outside. */
+/* Six times the volume inside of what it shows, where its triangles turn counter-clockwise seen
+ * from outside. */
 static double volume_of(const masu_bake_content *content, const masu_blob_mesh *mesh) {
     double sum = 0;
     for (uint32_t i = 0; i < mesh->primitive_count; i++) {

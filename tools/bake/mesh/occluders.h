@@ -17,8 +17,9 @@ bool masu_bake_add_occluder(masu_bake_content *content, uint32_t mesh, masu_bake
  * *box is that box. */
 bool masu_bake_is_box(const masu_bake_content *content, uint32_t mesh, masu_bake_box *box);
 
-/* Takes the boxes away from meshes that have a mask or are to be blended, with a warning for each:
- * one looks through them. Occluders are sorted, materials have their flags (bake/texture/texture.h). */
+/* Takes the boxes away from meshes that have a mask or are to be blended, with a warning for
+ * each: one looks through them. Occluders are sorted, materials have their flags
+ * (bake/texture/texture.h). */
 void masu_bake_drop_occluders(masu_bake_content *content);
 /* Gives each mesh occluders that has none yet and whose second longest side is, at its largest
  * placement, at least `least` metres. */

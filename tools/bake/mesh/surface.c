@@ -164,8 +164,8 @@ double masu_bake_surface_distance(const masu_bake_surface *s, vec3 p, size_t *wh
     return sqrt(best);
 }
 
-/* What is known of the largest distance while triangles are looked at: it is at least `lower`, at some
- * corner, and at most `upper` for all triangles that are done. */
+/* What is known of the largest distance while triangles are looked at: it is at least `lower`,
+ * at some corner, and at most `upper` for all triangles that are done. */
 typedef struct search {
     const masu_bake_surface *to;
     double lower, upper, limit;

@@ -20,16 +20,16 @@ void masu_bake_surface_release(masu_bake_surface *surface);
 void masu_bake_surface_collect(const masu_bake_content *content, uint32_t first, uint32_t count,
                                masu_bake_buffer *out);
 
-/* Distance to a triangle, and to the surface; DBL_MAX: it is empty. `which`, if not NULL, is a guess
- * of the nearest triangle, any valid index, and becomes it. */
+/* Distance to a triangle, and to the surface; DBL_MAX: it is empty. `which`, if not NULL, is a
+ * guess of the nearest triangle, any valid index, and becomes it. */
 double masu_bake_triangle_distance(const masu_bake_vec3 t[3], masu_bake_vec3 p);
 double masu_bake_surface_distance(const masu_bake_surface *surface, masu_bake_vec3 p,
                                   size_t *which);
 
-/* An upper bound of the largest distance from any point of `from` to the nearest of `to`. Bound, not
- * sample: a triangle is cut up until the distance of its corners to ONE triangle of `to`, which is
- * convex and so largest at a corner, exceeds what some corner shows by little. DBL_MAX if it is
- * seen to be over `limit`. */
+/* An upper bound of the largest distance from any point of `from` to the nearest of `to`. Bound,
+ * not sample: a triangle is cut up until the distance of its corners to ONE triangle of `to`,
+ * which is convex and so largest at a corner, exceeds what some corner shows by little. DBL_MAX
+ * if it is seen to be over `limit`. */
 double masu_bake_surface_deviation(const masu_bake_surface *from, const masu_bake_surface *to,
                                    double limit);
 

@@ -294,8 +294,8 @@ uint64_t masu_bake_trace_triangles(const masu_bake_trace *trace) { return trace-
 
 /* ---- rays ---- */
 
-/* How far points are lifted off a surface at p, which a ray has travelled t to: some units in the last
- * place of what the coordinates were computed from. */
+/* How far points are lifted off a surface at p, which a ray has travelled t to: some units in
+ * the last place of what the coordinates were computed from. */
 static float lift(const float p[3], float t) {
     float most = fmaxf(fabsf(p[0]), fmaxf(fabsf(p[1]), fabsf(p[2])));
     return 4e-6f * (most + t) + 1e-6f;

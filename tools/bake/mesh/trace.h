@@ -2,12 +2,12 @@
  * instances show, in world space, with the colour that they send back. Embree does the rays.
  *
  * What it knows of a surface is what diffuse light needs: which way it faces, its base colour and
- * what it emits, both with their maps, read from a mip of at most 64 texels a side; a masked texel is
- * not there. Base colour stands for the share of light that comes back, of metals too. LODs are left
- * out. With an SDF (light/field.h), that too.
+ * what it emits, both with their maps, read from a mip of at most 64 texels a side; a masked texel
+ * is not there. Base colour stands for the share of light that comes back, of metals too. LODs are
+ * left out. With an SDF (light/field.h), that too.
  *
- * Rays give the same answer in every run and on every thread: the tree is built by one thread, and
- * two surfaces at one place are told apart by their order in it. */
+ * Rays give the same answer in every run and on every thread: the tree is built by one thread,
+ * and two surfaces at one place are told apart by their order in it. */
 #ifndef MASU_BAKE_TRACE_H
 #define MASU_BAKE_TRACE_H
 

@@ -1,9 +1,9 @@
 /* triangles.c: triangles of unknown quality become primitives that the runtime may trust.
  *
- * Per triangle list: drop what cannot be drawn (counted, never silently), make normals where they
- * are missing (creases.c) or unusable, quantise, merge vertices that became equal bit for bit, and cut into
- * primitives of at most MASU_BAKE_PRIMITIVE_VERTICES vertices. The order of triangles and of first
- * use of vertices is kept, so the same input gives the same bytes. */
+ * Per triangle list: drop what cannot be drawn (counted, never silently), make normals where
+ * they are missing (creases.c) or unusable, quantise, merge vertices that became equal bit for
+ * bit, and cut into primitives of at most MASU_BAKE_PRIMITIVE_VERTICES vertices. The order of
+ * triangles and of first use of vertices is kept, so the same input gives the same bytes. */
 #include "bake/mesh/triangles.h"
 
 #include "bake/mesh/creases.h"

@@ -1,5 +1,6 @@
-/* camera.h: cameras that model files bring along: of a scene one may be the picture's ("camera": {"from": ...}),
- * the others are names in the statistics. They travel with the piece that they were read with. */
+/* camera.h: cameras that model files bring along: of a scene one may be the picture's ("camera":
+ * {"from": ...}), the others are names in the statistics. They travel with the piece that they
+ * were read with. */
 #ifndef MASU_BAKE_CAMERA_H
 #define MASU_BAKE_CAMERA_H
 
@@ -18,8 +19,9 @@ typedef struct masu_bake_camera {
 #define MASU_BAKE_CAMERAS(c) ((masu_bake_camera *)(void *)(c)->cameras.data)
 uint32_t masu_bake_camera_count(const masu_bake_content *content);
 
-/* Adds one, unless it has no place, looks nowhere or is wider than a picture can be. height: of an orthographic one,
- * or 0. The name is cut if it is too long; its control characters become '?'. */
+/* Adds one, unless it has no place, looks nowhere or is wider than a picture can be. height: of
+ * an orthographic one, or 0. The name is cut if it is too long; its control characters become
+ * '?'. */
 void masu_bake_add_camera(masu_bake_content *content, const char *name, double fov_y, double height,
                           masu_bake_vec3 position, masu_bake_vec3 direction);
 

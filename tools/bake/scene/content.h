@@ -23,7 +23,8 @@
 
 typedef struct masu_bake_content {
     masu_bake_buffer section[MASU_BLOB_KIND_COUNT]; /* by masu_blob_kind */
-    /* Textures as materials ask for them; bake/texture/texture.c makes sections of them at the end. */
+    /* Textures as materials ask for them; bake/texture/texture.c makes sections of them at the
+     * end. */
     masu_bake_buffer maps;       /* masu_bake_maps, one per material */
     masu_bake_buffer images;     /* masu_bake_image */
     masu_bake_buffer image_text; /* their names, each with its NUL */
@@ -45,7 +46,7 @@ typedef struct masu_bake_content {
 typedef struct masu_bake_image {
     uint32_t name;                  /* offset into image_text */
     uint32_t raw_width, raw_height; /* the data are BGRA texels; 0: a file's bytes */
-    uint32_t outside;               /* 1: of a folder that its model may not name; looked for elsewhere alone */
+    uint32_t outside; /* 1: of a folder that its model may not name; looked for elsewhere alone */
     uint64_t data, data_bytes;
 } masu_bake_image;
 
@@ -57,7 +58,8 @@ enum {
     MASU_BAKE_ROUGHNESS,
     MASU_BAKE_METALLIC,
     MASU_BAKE_EMISSIVE,
-    MASU_BAKE_OPACITY, /* alpha as a picture of its own; with `transmission` the share that is transmitted */
+    /* alpha as a picture of its own; with `transmission` the share that is transmitted */
+    MASU_BAKE_OPACITY,
     MASU_BAKE_OCCLUSION,
     MASU_BAKE_COAT, /* apart here, as roughness and metallic are */
     MASU_BAKE_COAT_ROUGHNESS,
@@ -67,8 +69,8 @@ enum {
     MASU_BAKE_MAPS
 };
 
-/* AUTO: the picture decides whether it is a mask. COVERS: the format says that alpha is what is there; it is a mask
- * if anything is below the cut-off. */
+/* AUTO: the picture decides whether it is a mask. COVERS: the format says that alpha is what is
+ * there; it is a mask if anything is below the cut-off. */
 enum {
     MASU_BAKE_ALPHA_AUTO,
     MASU_BAKE_ALPHA_OPAQUE,
@@ -84,10 +86,12 @@ enum {
     MASU_BAKE_RELIEF_NAMED_HEIGHTS  /* heights, unless the picture has normals in it */
 };
 
-/* Which of a coat and what lies below it has the relief of the normal map; the other has the mesh's normal. */
+/* Which of a coat and what lies below it has the relief of the normal map; the other has the
+ * mesh's normal. */
 enum { MASU_BAKE_RELIEF_OF_BOTH, MASU_BAKE_RELIEF_OF_BASE, MASU_BAKE_RELIEF_OF_COAT };
 
-/* Whether vertices have colours of their own, which the base colour is multiplied by; and alpha below 1. */
+/* Whether vertices have colours of their own, which the base colour is multiplied by; and alpha
+ * below 1. */
 enum { MASU_BAKE_COLORED_NOT, MASU_BAKE_COLORED, MASU_BAKE_COLORED_ALPHA };
 
 #define MASU_BAKE_WRAP_REPEAT 3 /* repeats even if coordinates stay in 0..1 */
@@ -108,7 +112,7 @@ typedef struct masu_bake_maps {
     uint8_t dark;                    /* emission was meant for a map that the importer left out */
     uint8_t shadowless;              /* 1: casts no shadows */
     uint8_t colored;                 /* MASU_BAKE_COLORED_* */
-    uint8_t second;                  /* bit of a slot of a texture set: its map is of the second coordinates */
+    uint8_t second; /* bit of a slot of a texture set: its map is of the second coordinates */
     uint8_t nearest;                 /* 1: magnified without interpolation */
     uint8_t transmission;            /* with `tinted`: what the map of opacity is */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
@@ -131,8 +135,8 @@ void masu_bake_content_release(masu_bake_content *content);
 #define MASU_BAKE_LIGHTS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_LIGHTS, masu_blob_light)
 #define MASU_BAKE_MATERIALS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_MATERIALS, masu_blob_material)
 
-/* COLORS and TEXCOORDS_1 end with the last vertex that has other than white and 0: masu_bake_pad_attributes makes them
- * as many as vertices, where there are any. */
+/* COLORS and TEXCOORDS_1 end with the last vertex that has other than white and 0:
+ * masu_bake_pad_attributes makes them as many as vertices, where there are any. */
 typedef struct masu_bake_attributes {
     uint32_t color; /* as masu_blob_color has it: MASU_BLOB_WHITE */
     float texcoord[2];
@@ -146,8 +150,8 @@ void masu_bake_pad_attributes(masu_bake_content *content);
 /* Linear, with alpha. */
 uint32_t masu_bake_encode_color(const float color[4]);
 
-/* A name's offset. Control characters and broken UTF-8 become '?'; an empty name is NONE; one that is longer than
- * a blob takes is cut, and counted. */
+/* A name's offset. Control characters and broken UTF-8 become '?'; an empty name is NONE; one
+ * that is longer than a blob takes is cut, and counted. */
 uint32_t masu_bake_name(masu_bake_content *content, const char *name, size_t length);
 const char *masu_bake_name_text(const masu_bake_content *content, uint32_t name); /* "" for NONE */
 

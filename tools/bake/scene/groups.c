@@ -1,10 +1,10 @@
 /* groups.c: see groups.h.
  *
- * Every group, the scene's own and the root, has things: instances and groups named by the scene. Up
- * to MASU_CULL_LEAF of them are members of the group itself; of more, a binary tree is made, which
- * splits the things along the longest side of the box of their middles where the surface area
- * heuristic is least, though not further out than a quarter. Groups and items end up in the order of
- * a breadth-first walk, as src/scene/check_groups.c asks for. */
+ * Every group, the scene's own and the root, has things: instances and groups named by the
+ * scene. Up to MASU_CULL_LEAF of them are members of the group itself; of more, a binary tree is
+ * made, which splits the things along the longest side of the box of their middles where the
+ * surface area heuristic is least, though not further out than a quarter. Groups and items end
+ * up in the order of a breadth-first walk, as src/scene/check_groups.c asks for. */
 #include "bake/scene/groups.h"
 #include "scene/cull.h"
 

@@ -1,8 +1,9 @@
 /* groups.h: what is culled together.
  *
- * While a scene is put together, an instance's `group` is a tag: MASU_BLOB_NONE, MASU_BAKE_MOVING, or
- * the index of a group that the scene names; those stand in the GROUPS section with their full path
- * as name and their parent in `reserved`. masu_bake_groups turns all of it into the final tree. */
+ * While a scene is put together, an instance's `group` is a tag: MASU_BLOB_NONE,
+ * MASU_BAKE_MOVING, or the index of a group that the scene names; those stand in the GROUPS
+ * section with their full path as name and their parent in `reserved`. masu_bake_groups turns
+ * all of it into the final tree. */
 #ifndef MASU_BAKE_GROUPS_H
 #define MASU_BAKE_GROUPS_H
 

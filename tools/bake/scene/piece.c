@@ -58,7 +58,8 @@ bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_
     return false;
 }
 
-/* What a scene gives a material takes the place of the model's lobes: blob.h allows one, and none with a coat. */
+/* What a scene gives a material takes the place of the model's lobes: blob.h allows one, and
+ * none with a coat. */
 static void drop_lobes(const masu_bake_override *o, masu_blob_material *to, masu_bake_maps *maps) {
     if (!o->specular && !(to->coat > 0) && to->meso == MASU_BLOB_NONE) return;
     for (int k = 0; k < 3; k++) to->specular_color[k] = to->sheen_color[k] = 0;
@@ -67,7 +68,8 @@ static void drop_lobes(const masu_bake_override *o, masu_blob_material *to, masu
     maps->image[MASU_BAKE_LOBE_COLOR] = maps->image[MASU_BAKE_LOBE_STRENGTH] = MASU_BLOB_NONE;
 }
 
-/* The index of refraction also is the reflectance, unless `specular` is given or fixed by a sheen. */
+/* The index of refraction also is the reflectance, unless `specular` is given or fixed by a
+ * sheen. */
 static void set_ior(masu_blob_material *to, float ior, bool own_specular) {
     float root = (ior - 1) / (ior + 1);
     to->ior = ior;
@@ -79,7 +81,8 @@ static void set_ior(masu_blob_material *to, float ior, bool own_specular) {
  * light. */
 static void make_unlit(masu_blob_material *to, masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
     const float *base = to->base_color;
-    if (maps->unlit && base[0] == 0.0f && base[1] == 0.0f && base[2] == 0.0f) return; /* it is one */
+    /* it is one */
+    if (maps->unlit && base[0] == 0.0f && base[1] == 0.0f && base[2] == 0.0f) return;
     memcpy(to->emissive, to->base_color, sizeof to->emissive);
     maps->image[MASU_BAKE_EMISSIVE] = maps->image[MASU_BAKE_BASE];
     maps->channel[MASU_BAKE_EMISSIVE] = maps->channel[MASU_BAKE_BASE];
@@ -148,13 +151,15 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     drop_lobes(o, to, maps);
 }
 
-/* Where colour and emission repeat with the detail, it is the texture coordinates that are scaled: rays and lights then see
- * the same, and nothing is scaled when drawn. What they are scaled by, 1 for nothing. */
+/* Where colour and emission repeat with the detail, it is the texture coordinates that are
+ * scaled: rays and lights then see the same, and nothing is scaled when drawn. What they are
+ * scaled by, 1 for nothing. */
 static void scale_all(masu_blob_material *to, masu_bake_maps *maps, float scale[2]) {
     for (int k = 0; k < 2; k++) {
         scale[k] = to->detail[k];
         to->detail[k] = 1;
-        if (scale[k] > 1 && maps->wrap[k] == 1) maps->wrap[k] = 0; /* clamped: would be shown once */
+        /* clamped: would be shown once */
+        if (scale[k] > 1 && maps->wrap[k] == 1) maps->wrap[k] = 0;
     }
 }
 
@@ -214,8 +219,8 @@ static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *p
     return offset;
 }
 
-/* The coordinates of a primitive that has been copied. `by`: of each vertex of the piece, the material that has scaled it,
- * from 1. Returns NULL or what is wrong. */
+/* The coordinates of a primitive that has been copied. `by`: of each vertex of the piece, the
+ * material that has scaled it, from 1. Returns NULL or what is wrong. */
 static const char *scale_coordinates(masu_bake_content *scene, const masu_blob_primitive *p, uint32_t first_vertex,
                                      uint32_t material, const float scale[2], uint32_t *by) {
     static const uint32_t kinds[2] = {MASU_BLOB_TEXCOORDS, MASU_BLOB_TEXCOORDS_1};
@@ -344,8 +349,8 @@ double masu_bake_light_range(masu_bake_vec3 color) {
     return fmin(fmax(10.0 * sqrt(fmax(most, 0.0)), 1e-3), 1e9);
 }
 
-/* By the radiant intensity / pi of an area light along its normal, or of a capsule from aside; six times that
- * of a point, for highlights are seen from farther. At least 8 times its size. */
+/* By the radiant intensity / pi of an area light along its normal, or of a capsule from aside;
+ * six times that of a point, for highlights are seen from farther. At least 8 times its size. */
 double masu_bake_area_range(const masu_blob_light *light) {
     uint32_t type = light->type & MASU_LIGHT_TYPE;
     double r = (double)light->radius, area = 0, size = 0;

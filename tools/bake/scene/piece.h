@@ -15,7 +15,8 @@ typedef struct masu_bake_override {
     masu_bake_maps maps; /* pictures of the scene, by its own numbers */
     bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity, single, relief_of, shadowless, thickness, ior;
     bool unlit, depth_bias, repeat;
-    bool detail_color, color_repeats; /* whether the detail is of colour and emission too is given; and is so */
+    /* whether the detail is of colour and emission too is given; and is so */
+    bool detail_color, color_repeats;
     char name[MASU_BAKE_MATCH];  /* that the host finds it by; "": its own */
     char match[MASU_BAKE_MATCH]; /* of the material's name or its colour's picture; "": all */
 } masu_bake_override;
@@ -31,22 +32,23 @@ bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_
 bool masu_bake_overrides_equal(const masu_bake_overrides *a, const masu_bake_overrides *b);
 
 /* Where a piece already lies in the scene, for the second and later placements with the same
- * override. Zero at first; with another override, one whose has_meshes is false again, of vertices whose texture
- * coordinates are not scaled. */
+ * override. Zero at first; with another override, one whose has_meshes is false again, of
+ * vertices whose texture coordinates are not scaled. */
 typedef struct masu_bake_residence {
     uint32_t first_vertex, first_mesh;
     bool has_vertices, has_meshes, scaled;
 } masu_bake_residence;
 
-/* Appends `piece` to `scene`: vertices and meshes where the residence says that they are missing,
- * instances every time. `prefix` goes before the instances' names; may be NULL. Returns NULL or what is
- * wrong. */
+/* Appends `piece` to `scene`: vertices and meshes where the residence says that they are
+ * missing, instances every time. `prefix` goes before the instances' names; may be NULL. Returns
+ * NULL or what is wrong. */
 const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
                             masu_bake_residence *residence, const masu_bake_affine *placement,
                             const masu_bake_overrides *overrides, const char *prefix);
 
-/* The same of a piece's lights, after it; those of instances stay with them. factor: of their colours;
- * 0: without them. A range of 0 becomes masu_bake_light_range's. Returns NULL or what is wrong. */
+/* The same of a piece's lights, after it; those of instances stay with them. factor: of their
+ * colours; 0: without them. A range of 0 becomes masu_bake_light_range's. Returns NULL or what
+ * is wrong. */
 const char *masu_bake_place_lights(masu_bake_content *scene, const masu_bake_content *piece,
                                    const masu_bake_affine *placement, uint32_t first_instance,
                                    double factor, const char *prefix);

@@ -12,7 +12,8 @@ static void *elements(const masu_bake_content *c, uint32_t kind, uint64_t first)
     return c->section[kind].data + (size_t)first * masu_bake_stride(kind);
 }
 
-/* Appends a copy of elements of a section, which may be of the same content. Returns the first one's number. */
+/* Appends a copy of elements of a section, which may be of the same content. Returns the first
+ * one's number. */
 static uint32_t copy_range(masu_bake_content *to, const masu_bake_content *from, uint32_t kind,
                            uint32_t first, uint32_t count) {
     uint32_t made = (uint32_t)masu_bake_count(to, kind);

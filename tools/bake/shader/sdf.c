@@ -54,7 +54,8 @@ static bool write_text(const char *directory, const char *name, const void *text
 
 static void append_scene_header(masu_bake_buffer *text, const masu_bake_content *content,
                                 const char *glsl_path) {
-    /* docs/scene.md promises version 450, of which 440 lacks this for fields (shaders/shaders.mk says why 440). */
+    /* docs/scene.md promises version 450, of which 440 lacks this for fields (shaders/shaders.mk
+     * says why 440). */
     masu_bake_append_text(text, "#extension GL_EXT_shader_integer_mix : require\n");
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
         const masu_blob_sdf_param *p =
@@ -109,7 +110,8 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
     sdf->part_count = scene->part_count;
     sdf->block_words = scene->block_words;
-    if (!scene->anchored) sdf->flags &= ~MASU_SDF_ANCHORED; /* nothing in it depends on where it is */
+    /* nothing in it depends on where it is */
+    if (!scene->anchored) sdf->flags &= ~MASU_SDF_ANCHORED;
     if (scene->timeless) sdf->flags |= MASU_SDF_TIMELESS;
     masu_bake_append(&content->section[MASU_BLOB_SLOTS],
                      scene->slot_count ? scene->slots : &no_slot,
@@ -118,7 +120,8 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     content->sdf_glossiest = (float)scene->glossiest;
 }
 
-/* A field that is written by hand says with a line of its own that it has terms (shaders/sdf/terms.glsl). */
+/* A field that is written by hand says with a line of its own that it has terms
+ * (shaders/sdf/terms.glsl). */
 static bool has_terms(const masu_bake_buffer *text) {
     static const char line[] = "#define MASU_SDF_TERMS";
     const char *data = (const char *)text->data;
@@ -320,7 +323,8 @@ static bool load_whole_vectors(const char *path, const char *glsl_path) {
     }
 }
 
-/* What the module was compiled for, in the module itself: masu_scene_bind compares it with the blob's numbers. */
+/* What the module was compiled for, in the module itself: masu_scene_bind compares it with the
+ * blob's numbers. */
 static bool put_record(const char *path, const masu_module_counts *counts, const char *glsl_path) {
     masu_bake_buffer words = {0};
     uint32_t record[MASU_MODULE_RECORD_WORDS] = {MASU_MODULE_RECORD_FIRST};
@@ -401,6 +405,7 @@ static char *include_option(const char *directory) {
 
 enum {
     ALWAYS,
+    MOVES,
     UPDATED,
     DYNAMIC,
     VARIANT,
@@ -411,12 +416,12 @@ enum {
     BOUNCED
 };
 
-/* The shaders that are compiled together with the scene's field, and the sections they go to. The march
- * is first: what does not compile is reported under its name. */
+/* The shaders that are compiled together with the scene's field, and the sections they go to.
+ * The march is first: what does not compile is reported under its name. */
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
-    int when; /* always; with slots that change, or with time; with --variants; with shadows or
+    int when; /* always; with a field that may change; with slots that change, or with time; with --variants; with shadows or
                  ambient occlusion; with punctual lights that cast shadows; with reflections and slots that are
                  constant, or change; with a live bounce */
 } scene_shaders[] = {
@@ -424,7 +429,7 @@ static const struct {
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
     {"update.comp", "-DMASU_MOTION=1", "before.raw", "before.spv", MASU_BLOB_UPDATE_PREVIOUS_SPIRV,
      DYNAMIC},
-    {"sdf_velocity.comp", NULL, "motion.raw", "motion.spv", MASU_BLOB_VELOCITY_SPIRV, ALWAYS},
+    {"sdf_velocity.comp", NULL, "motion.raw", "motion.spv", MASU_BLOB_VELOCITY_SPIRV, MOVES},
     {"silhouettes.comp", NULL, "edges.raw", "edges.spv", MASU_BLOB_SILHOUETTES_SPIRV, ALWAYS},
     {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
@@ -443,8 +448,9 @@ static const struct {
      MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC},
     {"bounce_sdf.comp", NULL, "bounce.raw", "bounce.spv", MASU_BLOB_BOUNCE_SDF_SPIRV, BOUNCED}};
 
-static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool casts, bool reflected,
+static bool wanted(int when, bool moves, bool dynamic, bool anchored, bool occlusion, bool casts, bool reflected,
                    bool bounced, bool variants) {
+    if (when == MOVES) return moves;
     if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
     if (when == OCCLUSION) return occlusion;
@@ -497,10 +503,68 @@ static bool take_steepest(masu_bake_content *content, double steepest, const cha
     return true;
 }
 
+/* ---- static fields ---- */
+
+static bool run_quietly(const char *const *arguments) {
+    masu_bake_buffer said = {0};
+    masu_bake_result result = masu_bake_run(arguments, MASU_BAKE_TOOL_SECONDS, &said);
+    masu_bake_release(&said);
+    return result.end == MASU_BAKE_EXITED && result.code == 0;
+}
+
+/* Whether the surface of a source of GLSL may depend on time. A surface that uses functions which are
+ * not documented does not compile here, and is assumed to. */
+static bool surface_reads_time(const paths *p) {
+    const char *const compile[] = {"glslangValidator", "-V", "--target-env", "vulkan1.1",
+                                   p->include_here, p->include_scene, "-DMASU_TRY_SURFACE", "-S",
+                                   p->stage, "-o", p->raw, p->source, NULL};
+    const char *const optimise[] = {"spirv-opt", "--target-env=vulkan1.1", "-O", p->raw, "-o",
+                                    p->optimised, NULL};
+    masu_bake_buffer spirv = {0};
+    bool time = true;
+    if (run_quietly(compile) && run_quietly(optimise) &&
+        masu_bake_read_file(p->optimised, SPIRV_MAX, &spirv))
+        time = masu_bake_try_reads((const uint32_t *)(const void *)spirv.data, spirv.bytes / 4).time;
+    masu_bake_release(&spirv);
+    return time;
+}
+
+/* The first parameter that a host may change, or NULL. */
+static const char *changing_param(const masu_bake_content *content) {
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
+        const masu_blob_sdf_param *p =
+            &MASU_BAKE_ARRAY(content, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];
+        if (p->minimum < p->maximum) return masu_bake_name_text(content, p->name);
+    }
+    return NULL;
+}
+
+/* Decides whether the field may change from frame to frame. reads: of GLSL, in a source or in blocks.
+ * False: the scene declares a static field, and this one is not. */
+static bool decide_moves(const masu_bake_content *content, const masu_sdfc_result *scene,
+                         masu_bake_reads reads, bool is_static, const char *path, bool *moves) {
+    const char *param = reads.params ? changing_param(content) : NULL;
+    const masu_sdfc_part *part = NULL;
+    for (uint32_t i = 0; i < scene->part_count && !part; i++)
+        if (scene->parts[i].dynamic) part = &scene->parts[i];
+    *moves = reads.time || param || part;
+    if (!is_static || !*moves) return true;
+    if (part)
+        masu_cli_error("%s: declared \"static\", but part %s depends on time or on a parameter", path,
+                       part->name);
+    else if (reads.time)
+        masu_cli_error("%s: declared \"static\", but the field reads masu_time()", path);
+    else
+        masu_cli_error("%s: declared \"static\", but the field reads the parameter \"%s\" or another "
+                       "that may change (min < max)", path, param);
+    return false;
+}
+
 /* Right after the march, which has said what does not compile: a field that is too steep is refused
  * before the other shaders take their time. */
 static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, const char *directory,
-                       char *include_here, char *include_scene, const char *path) {
+                       char *include_here, char *include_scene, const char *path,
+                       masu_bake_reads *reads) {
     masu_bake_buffer spirv = {0};
     bool source = !masu_bake_is_sdf(path);
     bool measures = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf)->lipschitz == 0;
@@ -528,6 +592,14 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
                 masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4,
                               &options, path, source && measures ? &steepest : NULL) &&
                 (!source || !measures || take_steepest(content, steepest, path));
+    if (good) {
+        *reads = masu_bake_try_reads((const uint32_t *)(const void *)spirv.data, spirv.bytes / 4);
+        masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
+        if (reads->time)
+            sdf->flags &= ~MASU_SDF_TIMELESS;
+        else if (source && !surface_reads_time(&p))
+            sdf->flags |= MASU_SDF_TIMELESS;
+    }
     masu_bake_release(&spirv);
     free(cameras);
     free(p.source);
@@ -536,7 +608,8 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
     return good;
 }
 
-/* Those that a program adds to other scenes have no shadows of the SDF: it is not compiled for them. */
+/* Those that a program adds to other scenes have no shadows of the SDF: it is not compiled for
+ * them. */
 static bool any_light_casts(const masu_bake_content *content) {
     const masu_blob_light *lights = MASU_BAKE_ARRAY(content, MASU_BLOB_LIGHTS, const masu_blob_light);
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_LIGHTS); i++) {
@@ -546,22 +619,24 @@ static bool any_light_casts(const masu_bake_content *content) {
 }
 
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool reflected, bool bounced, bool variants) {
+                             const masu_bake_occlusion *occlusion, bool is_static, bool reflected, bool bounced,
+                             bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
     char *include_here = include_option(directory),
          *include_scene = include_option(scene_directory);
     bool has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0;
-    bool dynamic = false;
+    bool dynamic = false, moves = true;
     masu_sdfc_result scene = {0};
+    masu_bake_reads reads = {false, false};
     bool darkens = occlusion->shadows || occlusion->ambient;
     bool casts = any_light_casts(content);
     bool good = lay_out(directory, content, glsl_path, &dynamic, &scene) &&
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->flags & MASU_SDF_ANCHORED;
-        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, casts, reflected, bounced, variants))
+        if (!wanted(scene_shaders[i].when, moves, dynamic, anchored, darkens, casts, reflected, bounced, variants))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),
@@ -581,7 +656,9 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
         good = run_tools(&p, has_raster, directory, glsl_path, &counts) &&
                take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path) &&
                (i > 0 ||
-                try_blocks(content, &scene, directory, include_here, include_scene, glsl_path));
+                (try_blocks(content, &scene, directory, include_here, include_scene, glsl_path,
+                            &reads) &&
+                 decide_moves(content, &scene, reads, is_static, glsl_path, &moves)));
         free(p.source);
         free(p.raw);
         free(p.optimised);

@@ -1,10 +1,10 @@
 /* spirv.h: runs the main function of a compute shader on the CPU, one invocation at a time, with
  * every float in double precision: what a scene's own GLSL computes, before any GPU has seen it.
  *
- * For modules that spirv-val has passed: buffers of floats or numbers,
- * arithmetic, control flow, calls, GLSL.std.450. Anything else (images, atomics, derivatives) is not
- * known: the module is then refused by the number of the instruction, never run in part. Each run
- * has a budget of instructions, so that it ends. The machine owns its memory; nothing is global. */
+ * For modules that spirv-val has passed: buffers of floats or numbers, arithmetic, control flow,
+ * calls, GLSL.std.450. Anything else (images, atomics, derivatives) is not known: the module is
+ * then refused by the number of the instruction, never run in part. Each run has a budget of
+ * instructions, so that it ends. The machine owns its memory; nothing is global. */
 #ifndef MASU_BAKE_SPIRV_H
 #define MASU_BAKE_SPIRV_H
 
@@ -24,8 +24,8 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
                                           size_t error_size);
 void masu_bake_machine_free(masu_bake_machine *machine);
 
-/* The memory of the buffer at that binding of set 0, member after member, without padding; NULL: the
- * shader does not use it. *count: how many cells. */
+/* The memory of the buffer at that binding of set 0, member after member, without padding; NULL:
+ * the shader does not use it. *count: how many cells. */
 masu_bake_cell *masu_bake_machine_buffer(masu_bake_machine *machine, uint32_t binding,
                                          size_t *count);
 
@@ -38,8 +38,8 @@ const uint32_t *masu_bake_machine_decided(const masu_bake_machine *machine, size
 /* Instructions that all runs so far have executed. */
 uint64_t masu_bake_machine_steps(const masu_bake_machine *machine);
 
-/* False, with one line in `error`: out of budget, an index outside of its array, an instruction that
- * is not known. */
+/* False, with one line in `error`: out of budget, an index outside of its array, an instruction
+ * that is not known. */
 bool masu_bake_machine_run(masu_bake_machine *machine, char *error, size_t error_size);
 
 #endif

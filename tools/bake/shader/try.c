@@ -3,6 +3,7 @@
  * hundred-thousandth is no violation. */
 #include "bake/shader/try.h"
 
+#include "bake/base/buffer.h"
 #include "bake/base/process.h"
 #include "bake/shader/spirv.h"
 #include "cli/cli.h"
@@ -58,7 +59,11 @@ const char masu_bake_try_source[] =
     "uint masu_part_at(uint i) { return i; }\n"
     "#include \"sdf_scene.glsl\"\n"
     "void main() {\n"
-    "#ifdef MASU_TRY_FIELD\n"
+    "#if defined(MASU_TRY_SURFACE)\n"
+    "    masu_surface s = masu_surface(vec3(0.5), 0.5, vec3(0.0), 0.0);\n"
+    "    masu_sdf_surface(vec3(point[0], point[1], point[2]), s);\n"
+    "    result = dot(s.albedo + s.emissive, vec3(1.0)) + s.roughness + s.metallic;\n"
+    "#elif defined(MASU_TRY_FIELD)\n"
     "    result = masu_sdf(vec3(point[0], point[1], point[2]));\n"
     "#else\n"
     "    masu_sdf_update();\n"
@@ -226,8 +231,9 @@ static bool keeps(trial *t, const double p[3], double fp, const double q[3], dou
     return false;
 }
 
-/* Of the halves of a pair one is as steep as the whole or steeper: going there again and again finds
- * a jump that no random pair is near enough to. The slope of a jump doubles with each halving. */
+/* Of the halves of a pair one is as steep as the whole or steeper: going there again and again
+ * finds a jump that no random pair is near enough to. The slope of a jump doubles with each
+ * halving. */
 static bool narrow(trial *t, double p[3], double fp, double q[3], double fq) {
     double early = 0;
     for (int i = 0; i < HALVINGS; i++) {
@@ -494,6 +500,30 @@ bool masu_bake_try_needed(const masu_sdfc_result *scene) {
     for (uint32_t i = 0; i < scene->part_count; i++)
         if (scene->parts[i].user) return true;
     return false;
+}
+
+#define MEMBER_TIME 1 /* of Input */
+#define MEMBER_PARAMS 3
+
+masu_bake_reads masu_bake_try_reads(const uint32_t *words, size_t count) {
+    enum { DECORATE = 71, BINDING = 33, CONSTANT = 43, ACCESS_CHAIN = 65, IN_BOUNDS = 66 };
+    masu_bake_reads reads = {false, false};
+    uint32_t bound = count > 5 ? words[3] : 0, input = 0;
+    uint32_t *values = masu_bake_allocate(((size_t)bound + 1) * sizeof *values);
+    memset(values, 0, ((size_t)bound + 1) * sizeof *values);
+    for (size_t at = 5; at < count && words[at] >> 16; at += words[at] >> 16) {
+        const uint32_t *w = &words[at];
+        uint32_t length = w[0] >> 16, op = w[0] & 0xFFFFu;
+        if (at + length > count) break;
+        if (op == DECORATE && length == 4 && w[2] == BINDING && w[3] == BIND_INPUT) input = w[1];
+        if (op == CONSTANT && length == 4 && w[2] < bound) values[w[2]] = w[3];
+        if ((op != ACCESS_CHAIN && op != IN_BOUNDS) || length < 5 || w[3] != input) continue;
+        uint32_t member = w[4] < bound ? values[w[4]] : 0;
+        reads.time = reads.time || member == MEMBER_TIME;
+        reads.params = reads.params || member == MEMBER_PARAMS;
+    }
+    free(values);
+    return reads;
 }
 
 bool masu_bake_try(const masu_sdfc_result *scene, const uint32_t *words, size_t count,

@@ -16,6 +16,13 @@ extern const char masu_bake_try_source[];
 /* Whether any part holds a block. */
 bool masu_bake_try_needed(const masu_sdfc_result *scene);
 
+/* What a module of the shader above still reads after optimisation: constant expressions and code
+ * that has no influence on the result do not count. */
+typedef struct masu_bake_reads {
+    bool time, params;
+} masu_bake_reads;
+masu_bake_reads masu_bake_try_reads(const uint32_t *words, size_t count);
+
 /* Tests all such parts with that module, in a child process. A source of GLSL is one part without a
  * name, tested within its bounds. False: the message is out. A module that cannot be run is a
  * warning: its constants are believed. Of cameras->cameras, the first one inside such a part is a

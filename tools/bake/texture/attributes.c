@@ -6,7 +6,8 @@ void masu_bake_whiten(masu_bake_content *content) {
         masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(content)[i];
         static const unsigned char white[4] = {255, 255, 255, 255};
         const masu_bake_image about = {.raw_width = 1, .raw_height = 1, .data_bytes = sizeof white};
-        bool needs = maps->colored || MASU_BAKE_MATERIALS(content)[i].anisotropy > 0; /* the grain is along u */
+        /* the grain is along u */
+        bool needs = maps->colored || MASU_BAKE_MATERIALS(content)[i].anisotropy > 0;
         if (!needs || maps->image[MASU_BAKE_BASE] != MASU_BLOB_NONE) continue;
         maps->image[MASU_BAKE_BASE] = masu_bake_add_image(content, "white", &about, white);
     }

@@ -42,7 +42,8 @@ static uint32_t neighbour(uint32_t at, uint32_t size, int step, bool clamped) {
     return at + 1 < size ? at + 1 : clamped ? at : 0;
 }
 
-/* Slopes by Sobel's operator: a difference across, smoothed along, for heights of 8 bits have steps. */
+/* Slopes by Sobel's operator: a difference across, smoothed along, for heights of 8 bits have
+ * steps. */
 void masu_bump_normals(const uint8_t *rgba, uint32_t width, uint32_t height, double strength,
                        const bool clamped[2], float *normals) {
     double scale = strength * MASU_BUMP_HEIGHT * (width > height ? width : height) / 8;

@@ -169,7 +169,8 @@ static void complain(MagickWand *wand, int fd) {
     give_up(fd, line);
 }
 
-/* solid: has no alpha. ImageMagick gives what was in its memory for that of some of these, of a TGA of 24 bits. */
+/* solid: has no alpha. ImageMagick gives what was in its memory for that of some of these, of a
+ * TGA of 24 bits. */
 static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
     size_t width = MagickGetImageWidth(wand), height = MagickGetImageHeight(wand);
     size_t w = width, h = height, bits = MagickGetImageDepth(wand);

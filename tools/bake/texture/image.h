@@ -1,8 +1,8 @@
-/* image.h: a picture file becomes bytes. ImageMagick reads it, in a child process with a clock
- * and half of the machine's memory: picture files are as hostile as models.
+/* image.h: a picture file becomes bytes. ImageMagick reads it, in a child process with a clock and
+ * half of the machine's memory: picture files are as hostile as models.
  *
- * Which reader runs is decided here, by the file's first bytes (TGA has none: by its name), and only
- * readers of plain pictures: ImageMagick by itself would also follow scripts and addresses. */
+ * Which reader runs is decided here, by the file's first bytes (TGA has none: by its name), and
+ * only readers of plain pictures: ImageMagick by itself would also follow scripts and addresses. */
 #ifndef MASU_BAKE_IMAGE_H
 #define MASU_BAKE_IMAGE_H
 

@@ -8,7 +8,8 @@
 
 #define HALVINGS 18 /* of a range of 256: to 2^-15 of the scale, finer than bytes */
 #define LARGEST 16.0f
-/* Of 140 masks of trees, fences and lamps that were measured at most 17 % is in between, of what is none at least 24. */
+/* Of 140 masks of trees, fences and lamps that were measured at most 17 % is in between, of what
+ * is none at least 24. */
 #define CLEAR 26
 #define SOLID 230
 #define BETWEEN_MOST 0.25
@@ -53,7 +54,8 @@ double masu_mask_coverage(const uint8_t *alpha, uint32_t width, uint32_t height,
     return (double)sum / (16.0 * width * height);
 }
 
-/* The eight values of a block, rounded as src/scene/texture.c does it; a device may be off by one. */
+/* The eight values of a block, rounded as src/scene/texture.c does it; a device may be off by
+ * one. */
 static void values_of(const unsigned char block[8], int values[8]) {
     int a = values[0] = block[0], b = values[1] = block[1];
     for (int i = 1; a > b && i < 7; i++) values[1 + i] = ((7 - i) * a + i * b + 3) / 7;
@@ -61,8 +63,8 @@ static void values_of(const unsigned char block[8], int values[8]) {
     if (a <= b) values[6] = 0, values[7] = 255;
 }
 
-/* Which of the values is next to `wanted` on its side of the cut-off; -1: none is on that side. A value
- * as near to the cut-off as rounding goes is on neither, if another will do. */
+/* Which of the values is next to `wanted` on its side of the cut-off; -1: none is on that side.
+ * A value as near to the cut-off as rounding goes is on neither, if another will do. */
 static int next_value(const int values[8], int wanted, int cutoff) {
     int best = -1, nearest = 1 << 20;
     for (int i = 0; i < 8; i++) {
@@ -76,9 +78,9 @@ static int next_value(const int values[8], int wanted, int cutoff) {
     return best;
 }
 
-/* A block and what it decodes to. The encoder puts a texel on the nearest value, on whichever side of
- * the cut-off that is; the ends of its range are the block's least and largest alpha, so that
- * a value on the right side is never far. */
+/* A block and what it decodes to. The encoder puts a texel on the nearest value, on whichever
+ * side of the cut-off that is; the ends of its range are the block's least and largest alpha, so
+ * that a value on the right side is never far. */
 static void encode_block(const uint8_t alpha[16], int cutoff, unsigned char block[8],
                          uint8_t decoded[16]) {
     int values[8];

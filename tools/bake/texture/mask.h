@@ -9,15 +9,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Whether a picture with so many texels of each alpha is a mask at this cut-off, where nothing else says what its alpha
- * is for: something is clear, something solid, and little is in between. What is mostly in between is a gloss, a
- * height or a smoke. */
+/* Whether a picture with so many texels of each alpha is a mask at this cut-off, where nothing
+ * else says what its alpha is for: something is clear, something solid, and little is in
+ * between. What is mostly in between is a gloss, a height or a smoke. */
 bool masu_mask_is_meant(const uint64_t histogram[256], uint8_t cutoff);
 
-/* The part of a repeated picture of these alphas that is there: filtered between texels, compared
- * with the cut-off at 16 places around each. Wrong turn: to count texels (Castano's first form, 2010).
- * A texel that reaches the cut-off alone is there only at its centre; needles rendered from afar
- * then cover half of what they should, and dots a quarter. */
+/* The part of a repeated picture of these alphas that is there: filtered between texels,
+ * compared with the cut-off at 16 places around each. Wrong turn: to count texels (Castano's
+ * first form, 2010). A texel that reaches the cut-off alone is there only at its centre; needles
+ * rendered from afar then cover half of what they should, and dots a quarter. */
 double masu_mask_coverage(const uint8_t *alpha, uint32_t width, uint32_t height, uint8_t cutoff);
 
 /* The alpha halves of BC3 blocks (16 bytes each, the rest is left alone; NULL: none wanted) of a

@@ -21,8 +21,9 @@ uint8_t masu_texel_to_unorm(float v);
 void masu_texel_halve(const float *from, uint32_t width, uint32_t height, bool by_alpha, float *to);
 
 /* How rough a surface of perceptual roughness `roughness` looks when its normals, whose mean has
- * this length, are no longer told apart: alpha^2 grows by twice the variance of the slopes, which is
- * (1 - length) / length for normals that scatter little (Toksvig, "Mipmapping normal maps", 2005). */
+ * this length, are no longer told apart: alpha^2 grows by twice the variance of the slopes,
+ * which is (1 - length) / length for normals that scatter little (Toksvig, "Mipmapping normal
+ * maps", 2005). */
 float masu_texel_rougher(float roughness, float mean_length);
 
 /* Blocks of bytes: 4 per texel, of which BC4 takes the first and BC5 the first two. Returns bytes

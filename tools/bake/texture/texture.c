@@ -27,11 +27,14 @@
 /* What to make; compared as bytes. */
 typedef struct request {
     uint32_t slot;
-    uint32_t image[3]; /* base: colour, opacity. surface: roughness, metallic, normal. coat: both. Or one */
+    /* base: colour, opacity. surface: roughness, metallic, normal. coat: both. Or one */
+    uint32_t image[3];
     uint8_t channel[2];
     uint8_t gloss, alpha;
-    uint8_t relief, clamped[2]; /* of a picture of normals or heights; what it does at its edge counts for heights */
-    uint8_t apart; /* alpha is not what the colour covers: base: transmission; coat: a lobe's strength */
+    /* of a picture of normals or heights; what it does at its edge counts for heights */
+    uint8_t relief, clamped[2];
+    /* alpha is not what the colour covers: base: transmission; coat: a lobe's strength */
+    uint8_t apart;
     float cutoff, normal_scale, roughness, occlusion;
 } request;
 
@@ -147,8 +150,8 @@ static void encode_normal(const float *level, size_t texels, uint8_t *bytes) {
     }
 }
 
-/* Roughness itself is averaged: the mean of alpha^2, which a variance is, drowns what is smooth, and the
- * light of a mixture is further off (tests/unit/test_normal_filter.c). */
+/* Roughness itself is averaged: the mean of alpha^2, which a variance is, drowns what is smooth,
+ * and the light of a mixture is further off (tests/unit/test_normal_filter.c). */
 static void encode_surface(const float *level, const float *normals, size_t texels, float roughness,
                            uint8_t *bytes) {
     for (size_t i = 0; i < texels; i++) {
@@ -163,8 +166,8 @@ static void encode_surface(const float *level, const float *normals, size_t texe
     }
 }
 
-/* What rays see of a mip; `bytes`: what it was encoded as, of masks their alpha. Nothing of normals and
- * occlusion, nor of what is blended, which rays pass by. */
+/* What rays see of a mip; `bytes`: what it was encoded as, of masks their alpha. Nothing of
+ * normals and occlusion, nor of what is blended, which rays pass by. */
 static void keep_picture(texture *t, const float *level, const uint8_t *bytes, uint32_t w,
                          uint32_t h, uint32_t mip) {
     bool mask = t->format == MASU_TEXTURE_BC3_SRGB;
@@ -213,9 +216,9 @@ static void finish(texture *t, float *level, float *normals) {
 
 /* ---- the three kinds ---- */
 
-/* What alpha is meant for, where the model does not say: nothing where no texel is under the cut-off,
- * else a mask, if the picture looks like one. Never blending: it costs a draw for each thing, and an order that meshes
- * of many leaves do not have. */
+/* What alpha is meant for, where the model does not say: nothing where no texel is under the
+ * cut-off, else a mask, if the picture looks like one. Never blending: it costs a draw for each
+ * thing, and an order that meshes of many leaves do not have. */
 static uint8_t judge_alpha(const maker *m, const request *wanted, const float *level, size_t texels) {
     uint64_t below = 0, less = 0, histogram[256] = {0};
     uint8_t meant = wanted->alpha;
@@ -336,7 +339,8 @@ static void make_surface(maker *m, texture *t) {
     if (has[0] || has[1] || has[2]) {
         const masu_bake_picture *size = has[0] ? &p[0] : has[1] ? &p[1] : &p[2];
         uint32_t w = size->width, h = size->height;
-        /* No smaller than the normals: else they would make it rougher where they are still seen. */
+        /* No smaller than the normals: else they would make it rougher where they are still
+         * seen. */
         if (has[2] && w < p[2].width) w = p[2].width;
         if (has[2] && h < p[2].height) h = p[2].height;
         float *level = allocate_level(w, h), *normals = NULL;
@@ -636,7 +640,8 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     material->flags = flags;
     if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
     material->layers = layers;
-    /* What is blended has no room for it: nor has it maps of the second coordinates (gltf_material.c). */
+    /* What is blended has no room for it: nor has it maps of the second coordinates
+     * (gltf_material.c). */
     uint32_t second = flags & MASU_MATERIAL_HAS_MAPS;
     if (!(flags & MASU_MATERIAL_IS_BLEND) && flags & MASU_MATERIAL_COAT_RELIEF) second |= 1u << MASU_SLOT_EMISSIVE;
     material->more_layers |= (maps->second & second) << 16;

@@ -1,9 +1,10 @@
 /* trace_texture.h: small pictures of textures, which rays of reflections look up where they meet a
  * surface: TRACE_TEXTURES and TRACE_TEXELS of the blob.
  *
- * While textures are made, each keeps a picture: a colour the mips from the finest that is small enough, in
- * linear light before it is compressed; roughness and metallic their mean alone, which is what a ray sees of
- * them. Once it is known what is traced, the pictures that its materials use become sections. */
+ * While textures are made, each keeps a picture: a colour the mips from the finest that is small
+ * enough, in linear light before it is compressed; roughness and metallic their mean alone,
+ * which is what a ray sees of them. Once it is known what is traced, the pictures that its
+ * materials use become sections. */
 #ifndef MASU_BAKE_TRACE_TEXTURE_H
 #define MASU_BAKE_TRACE_TEXTURE_H
 
@@ -32,13 +33,13 @@ typedef struct masu_bake_trace_row {
 /* As texels are stored: nearest of 256 roots. */
 uint8_t masu_bake_trace_root(float linear);
 
-/* The next mip of a colour: `level` has four floats per texel. Larger ones than `side` are passed over.
- * `alpha`: a byte per texel; NULL: opaque. */
+/* The next mip of a colour: `level` has four floats per texel. Larger ones than `side` are
+ * passed over. `alpha`: a byte per texel; NULL: opaque. */
 void masu_bake_trace_colors(masu_bake_trace_picture *p, uint32_t side, const float *level,
                             uint32_t width, uint32_t height, const uint8_t *alpha);
 
-/* A mip of roughness and metallic: the first two of four bytes per texel. The last one counts as the mean,
- * the first one says what is least. */
+/* A mip of roughness and metallic: the first two of four bytes per texel. The last one counts as
+ * the mean, the first one says what is least. */
 void masu_bake_trace_surface(masu_bake_trace_picture *p, const uint8_t *bytes, size_t texels,
                              bool first, bool last);
 
