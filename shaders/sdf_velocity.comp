@@ -149,6 +149,7 @@ vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
     return followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent), max(1e-3 * pixel, 8.0 * extent)) - p;
 }
 
+/* Velocity of the surface at a pixel. depth: above 0. */
 vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
 {
     vec3 through = masu_pixel_ray(at, size);
