@@ -4,9 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define GREY 24          /* a texel's channels differ by no more: JPEG makes grey nearly grey */
-#define GREY_SHARE 0.98  /* of the texels of what is grey */
-#define NORMAL_SHARE 0.9 /* of the texels of what has normals in it */
+/* the largest difference between the channels of a grey texel: JPEG makes grey nearly grey */
+#define GREY 24
+#define GREY_SHARE 0.98  /* least share of grey texels in a height map */
+#define NORMAL_SHARE 0.9 /* least share of normals among the texels of a normal map */
 
 static bool is_grey(const uint8_t *t) {
     int low = t[0] < t[1] ? t[0] : t[1], high = t[0] > t[1] ? t[0] : t[1];
@@ -15,7 +16,8 @@ static bool is_grey(const uint8_t *t) {
     return high - low <= GREY;
 }
 
-/* Of about unit length, and not from behind. Of colours few are, blue ones apart. */
+/* True for vectors of about unit length with positive z. Few colours meet this, except blue
+ * ones. */
 static bool is_normal(const uint8_t *t) {
     double x = (t[0] - 128) / 127.0, y = (t[1] - 128) / 127.0, z = (t[2] - 128) / 127.0;
     double length = sqrt(x * x + y * y + z * z);
@@ -42,8 +44,8 @@ static uint32_t neighbour(uint32_t at, uint32_t size, int step, bool clamped) {
     return at + 1 < size ? at + 1 : clamped ? at : 0;
 }
 
-/* Slopes by Sobel's operator: a difference across, smoothed along, for heights of 8 bits have
- * steps. */
+/* Slopes by the Sobel operator: a difference in one direction, smoothed in the other, because 8-bit
+ * heights have steps. */
 void masu_bump_normals(const uint8_t *rgba, uint32_t width, uint32_t height, double strength,
                        const bool clamped[2], float *normals) {
     double scale = strength * MASU_BUMP_HEIGHT * (width > height ? width : height) / 8;

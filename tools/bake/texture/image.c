@@ -1,5 +1,5 @@
-/* image.c: see image.h. What comes back through the pipe: a head, then the texels, or the
- * text of what is wrong. */
+/* image.c: see image.h. The child writes a header to the pipe, then the texels or the text of the
+ * error. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/texture/image.h"
 #include "bake/base/file.h"
@@ -18,7 +18,7 @@
 #include <wand/MagickWand.h>
 
 typedef struct head {
-    uint32_t width, height; /* 0: text follows */
+    uint32_t width, height; /* 0: error text follows */
     uint32_t whole[2], bits; /* as in masu_bake_picture */
 } head;
 
@@ -48,7 +48,7 @@ const char *masu_bake_image_format(const unsigned char *data, size_t bytes, cons
     return bytes > 18 && length > 4 && strcasecmp(name + length - 4, ".tga") == 0 ? "TGA" : NULL;
 }
 
-/* ---- the child's side ---- */
+/* ---- the child process ---- */
 
 typedef struct job {
     const masu_bake_content *content;
@@ -80,8 +80,8 @@ static FILE *open_regular(const char *path, off_t *bytes) {
     return file;
 }
 
-/* Where its name says, else by the last part of its name in one of the directories: models often
- * remember folders of another machine. */
+/* Opens the file's own path, else the last part of its name in one of the directories: models often
+ * contain paths of another machine. */
 static FILE *find(const job *j, off_t *bytes) {
     FILE *file = j->image->outside ? NULL : open_regular(j->name, bytes);
     int cause = j->image->outside ? EACCES : errno;
@@ -138,7 +138,7 @@ static void choose_size(int sizes, size_t *width, size_t *height) {
         if (*width < *height) *width = *height;
         *height = *width;
     }
-    /* Both sides by the same factor: the picture keeps its shape. */
+    /* Both sides are scaled by the same factor, which keeps the aspect ratio. */
     size_t larger = *width > *height ? *width : *height;
     if (larger > MASU_TEXTURE_SIZE_MAX) {
         *width = *width * MASU_TEXTURE_SIZE_MAX / larger;
@@ -169,12 +169,13 @@ static void complain(MagickWand *wand, int fd) {
     give_up(fd, line);
 }
 
-/* solid: has no alpha. ImageMagick gives what was in its memory for that of some of these, of a
- * TGA of 24 bits. */
+/* solid: the image has no alpha. For some of these, such as 24-bit TGA, ImageMagick returns
+ * uninitialised memory as alpha. */
 static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
     size_t width = MagickGetImageWidth(wand), height = MagickGetImageHeight(wand);
     size_t w = width, h = height, bits = MagickGetImageDepth(wand);
-    if (bits > 8) bits = MagickGetImageChannelDepth(wand, AllChannels); /* that its values need */
+    /* the bits that the values need */
+    if (bits > 8) bits = MagickGetImageChannelDepth(wand, AllChannels);
     choose_size(sizes, &w, &h);
     unsigned char *texels = malloc(w * h * 4);
     if (!texels) {
@@ -225,8 +226,9 @@ static void decode(const job *j, const unsigned char *data, size_t bytes, int fd
         complain(wand, fd);
         return;
     }
-    MagickSetFirstIterator(wand); /* of several pictures, such as mips, the first */
-    /* A TGA may have its lowest row first and says so; ImageMagick leaves it like that. */
+    MagickSetFirstIterator(wand); /* the first of several images, such as mips */
+    /* A TGA file may store its lowest row first and has a flag for it; ImageMagick does not flip
+     * it. */
     if (!strcmp(format, "TGA")) MagickAutoOrientImage(wand);
     if (MagickGetImageColorspace(wand) == CMYKColorspace) {
         MagickTransformImageColorspace(wand, sRGBColorspace);
@@ -243,7 +245,7 @@ static void read_in_child(void *argument, int fd) {
     if (data) decode(j, data, bytes, fd);
 }
 
-/* ---- the parent's side ---- */
+/* ---- the parent process ---- */
 
 static bool warn(const char *name, const char *why) {
     masu_cli_warn("texture %s: %s; ignored", name, why);

@@ -6,19 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HALVINGS 18 /* of a range of 256: to 2^-15 of the scale, finer than bytes */
+/* bisection steps over a range of 256: to 2^-15 of the scale, finer than bytes */
+#define HALVINGS 18
 #define LARGEST 16.0f
-/* Of 140 masks of trees, fences and lamps that were measured at most 17 % is in between, of what
- * is none at least 24. */
+/* Measured on 140 masks of trees, fences and lamps: at most 17 % of the texels are in between.
+ * Textures that are not masks have at least 24 %. */
 #define CLEAR 26
 #define SOLID 230
 #define BETWEEN_MOST 0.25
 #define SOLID_LEAST 0.01
 
-/* Places between four texels at odd eighths: their weights are whole 64ths. */
+/* Sample positions between four texels at odd eighths: their weights are whole 64ths. */
 static uint32_t places(int a, int b, int c, int d, int cutoff) {
     uint32_t there = (uint32_t)(a >= cutoff) + (b >= cutoff) + (c >= cutoff) + (d >= cutoff);
-    if (there == 0 || there == 4) return 4 * there; /* between them nothing is above or below all */
+    /* samples between them are all above or all below */
+    if (there == 0 || there == 4) return 4 * there;
     there = 0;
     for (int y = 1; y < 8; y += 2) {
         for (int x = 1; x < 8; x += 2) {
@@ -54,8 +56,7 @@ double masu_mask_coverage(const uint8_t *alpha, uint32_t width, uint32_t height,
     return (double)sum / (16.0 * width * height);
 }
 
-/* The eight values of a block, rounded as src/scene/texture.c does it; a device may be off by
- * one. */
+/* The eight values of a block, rounded as in src/scene/texture.c; a device may differ by one. */
 static void values_of(const unsigned char block[8], int values[8]) {
     int a = values[0] = block[0], b = values[1] = block[1];
     for (int i = 1; a > b && i < 7; i++) values[1 + i] = ((7 - i) * a + i * b + 3) / 7;
@@ -63,8 +64,8 @@ static void values_of(const unsigned char block[8], int values[8]) {
     if (a <= b) values[6] = 0, values[7] = 255;
 }
 
-/* Which of the values is next to `wanted` on its side of the cut-off; -1: none is on that side.
- * A value as near to the cut-off as rounding goes is on neither, if another will do. */
+/* The index of the value closest to `wanted` on the same side of the cut-off; -1: none. A value
+ * that is within rounding of the cut-off belongs to neither side, if there is an alternative. */
 static int next_value(const int values[8], int wanted, int cutoff) {
     int best = -1, nearest = 1 << 20;
     for (int i = 0; i < 8; i++) {
@@ -78,9 +79,9 @@ static int next_value(const int values[8], int wanted, int cutoff) {
     return best;
 }
 
-/* A block and what it decodes to. The encoder puts a texel on the nearest value, on whichever
- * side of the cut-off that is; the ends of its range are the block's least and largest alpha, so
- * that a value on the right side is never far. */
+/* Encodes a block and decodes it again. The encoder may choose a value on the wrong side of the
+ * cut-off. The ends of its range are the least and largest alpha of the block, so a value on the
+ * right side is always close. */
 static void encode_block(const uint8_t alpha[16], int cutoff, unsigned char block[8],
                          uint8_t decoded[16]) {
     int values[8];
@@ -124,8 +125,8 @@ void masu_mask_encode(const float *level, uint32_t width, uint32_t height, uint8
     }
 }
 
-/* Coverage rises with the scale, in steps, and but for compression never falls. Halving ends at the
- * step next to what is wanted; the best of all that it has seen counts. */
+/* Coverage rises with the scale in steps and, apart from compression errors, never falls. Bisection
+ * ends at the step next to `wanted`; the result is the best scale of all that were tried. */
 float masu_mask_scale(const float *level, uint32_t width, uint32_t height, uint8_t cutoff,
                       double wanted, uint8_t *alpha) {
     float low = 1 / LARGEST, high = LARGEST, best = 1;

@@ -92,8 +92,8 @@ static void gather(const uint8_t *rgba, uint32_t width, uint32_t height, uint32_
     }
 }
 
-/* For a value of 8 bits the two ends of 5 or 6 bits whose mean (2 a + b) / 3 is nearest; of equals
- * the nearest ends, which decoders of little precision like best. */
+/* The two ends of 5 or 6 bits whose mean (2 a + b) / 3 is closest to an 8-bit value. Among equal
+ * results, the closest ends: decoders of low precision have the least error with them. */
 typedef struct ends {
     uint8_t a, b;
     float value;
@@ -103,7 +103,7 @@ static float expanded(uint32_t c, uint32_t bits) {
     return (float)(c << (8 - bits) | c >> (2 * bits - 8));
 }
 
-/* The nearest to `wanted` that is not far from `other`. */
+/* The closest to `wanted` that is not far from `other`. */
 static ends find_ends(float wanted, float other, uint32_t bits) {
     ends best = {0, 0, 0};
     float least = 1e9f;
@@ -120,7 +120,7 @@ static ends find_ends(float wanted, float other, uint32_t bits) {
     return best;
 }
 
-/* Red and blue, green, and green beside an equal red and blue, so that greys have no tint. */
+/* Red and blue; green; and green next to an equal red and blue, so that greys have no tint. */
 static const ends *ends_of(int kind) {
     static ends tables[3][256];
     static bool filled;
@@ -139,7 +139,7 @@ static void solid_block(const uint8_t rgb[3], unsigned char out[8]) {
     ends r = ends_of(0)[rgb[0]], g = ends_of(grey ? 2 : 1)[rgb[1]], b = ends_of(0)[rgb[2]];
     uint32_t first = (uint32_t)r.a << 11 | (uint32_t)g.a << 5 | b.a,
              second = (uint32_t)r.b << 11 | (uint32_t)g.b << 5 | b.b;
-    /* The larger end is the first one: else there is no mean of thirds. */
+    /* The larger end is first: otherwise the block has no means of thirds. */
     uint32_t index = first == second ? 0 : first > second ? 2 : 3;
     uint32_t high = first > second ? first : second, low = first > second ? second : first;
     const unsigned char block[8] = {(unsigned char)high,         (unsigned char)(high >> 8),

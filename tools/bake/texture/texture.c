@@ -1,14 +1,14 @@
 /* texture.c: see texture.h.
  * Over 700 lines: kinds of maps, requests and arrays, of one structure.
  *
- *   maps of a material -> requests (what is to be made of which pictures), each made once
- *   request -> texture: pictures read, mips filtered, blocks made
+ *   maps of a material -> requests (a texture to make from certain images), each made once
+ *   request -> texture: images decoded, mips filtered, blocks compressed
  *   textures of one format and size -> one array of layers, the larger ones first
  *   arrays that a material uses together, and its wrapping -> a texture set
  *
- * Colour is filtered as linear light and weighted by alpha; masks keep their coverage; normals are
- * added up as vectors, and what their mean lacks in length makes the surface rougher: in its roughness
- * map, which is as large as the normals', or in one made for it where there is none. */
+ * Colour is filtered as linear light and weighted by alpha. Masks keep their coverage. Normals are
+ * averaged as vectors, and a mean shorter than 1 increases the roughness. The roughness map is
+ * therefore as large as the normal map; a material that has none gets one. */
 #include "bake/texture/texture.h"
 #include "bake/texture/bump.h"
 #include "bake/texture/image.h"
@@ -24,28 +24,28 @@
 
 #define SHOWN_ONCE_SLACK 0.001f /* exporters round coordinates */
 
-/* What to make; compared as bytes. */
+/* A texture to make; compared as bytes. */
 typedef struct request {
     uint32_t slot;
-    /* base: colour, opacity. surface: roughness, metallic, normal. coat: both. Or one */
+    /* base: colour, opacity. surface: roughness, metallic, normal. coat: both. Else one image */
     uint32_t image[3];
     uint8_t channel[2];
     uint8_t gloss, alpha;
-    /* of a picture of normals or heights; what it does at its edge counts for heights */
+    /* for a normal or height map; the behaviour at the edge matters for heights */
     uint8_t relief, clamped[2];
-    /* alpha is not what the colour covers: base: transmission; coat: a lobe's strength */
+    /* alpha is not the opacity of the colour: base: transmission; coat: a lobe's strength */
     uint8_t apart;
     float cutoff, normal_scale, roughness, occlusion;
 } request;
 
 typedef struct texture {
     request wanted;
-    bool made; /* else its pictures could not be used */
+    bool made; /* false: its images could not be used */
     uint32_t format, width, height, mips;
-    uint8_t alpha; /* what AUTO came to */
-    bool absolute; /* roughness has the material's factor in it already */
+    uint8_t alpha; /* the resolved AUTO */
+    bool absolute; /* roughness already includes the material's factor */
     masu_bake_buffer blocks;
-    bool traced; /* it keeps a picture for rays */
+    bool traced; /* it keeps a small texture for rays */
     uint32_t traced_side;
     masu_bake_trace_picture picture;
     uint32_t array, layer;
@@ -55,7 +55,7 @@ typedef struct maker {
     masu_bake_content *content;
     const char *directories;
     int sizes;
-    bool *failed; /* by image: warned of once */
+    bool *failed; /* by image: warned about once */
     bool *reduced;
     texture *textures;
     uint32_t count, capacity;
@@ -85,7 +85,7 @@ static bool read_picture(maker *m, uint32_t image, masu_bake_picture *picture) {
     return good;
 }
 
-/* Byte `channel` of the texel of `p` that is where (x, y) of a picture of that size is. */
+/* Byte `channel` of the texel of `p` at (x, y) of an image of width x height. */
 static uint8_t byte_at(const masu_bake_picture *p, uint32_t x, uint32_t y, uint32_t width,
                        uint32_t height, uint32_t channel) {
     size_t px = (size_t)x * p->width / width, py = (size_t)y * p->height / height;
@@ -114,7 +114,7 @@ static unsigned char *append_blocks(texture *t, const uint8_t *bytes, uint32_t w
     return to;
 }
 
-/* A level, and the next one in its place; `level` has room for the largest. */
+/* Replaces a level by the next one; `level` has room for the largest. */
 static void step_down(float *level, float *scratch, uint32_t w, uint32_t h, bool by_alpha) {
     uint32_t nw = w > 1 ? w / 2 : 1, nh = h > 1 ? h / 2 : 1;
     masu_texel_halve(level, w, h, by_alpha, scratch);
@@ -128,7 +128,7 @@ static void encode_color(const float *level, size_t texels, uint8_t *bytes) {
     }
 }
 
-/* The alpha of a mask's mip into its blocks; `wanted`: what mip 0 covers, which mip 0 says. */
+/* Encodes the alpha of a mask's mip. `wanted`: the coverage of mip 0, set when mip 0 is encoded. */
 static void encode_mask(const texture *t, const float *level, uint32_t w, uint32_t h, uint32_t mip,
                         double *wanted, uint8_t *scratch, unsigned char *blocks) {
     uint8_t cutoff = masu_texel_to_unorm(t->wanted.cutoff);
@@ -150,8 +150,8 @@ static void encode_normal(const float *level, size_t texels, uint8_t *bytes) {
     }
 }
 
-/* Roughness itself is averaged: the mean of alpha^2, which a variance is, drowns what is smooth,
- * and the light of a mixture is further off (tests/unit/test_normal_filter.c). */
+/* Roughness itself is averaged. The mean of alpha^2, which is a variance, would lose smooth parts,
+ * and the lighting of a mixture would have a larger error (tests/unit/test_normal_filter.c). */
 static void encode_surface(const float *level, const float *normals, size_t texels, float roughness,
                            uint8_t *bytes) {
     for (size_t i = 0; i < texels; i++) {
@@ -166,8 +166,8 @@ static void encode_surface(const float *level, const float *normals, size_t texe
     }
 }
 
-/* What rays see of a mip; `bytes`: what it was encoded as, of masks their alpha. Nothing of
- * normals and occlusion, nor of what is blended, which rays pass by. */
+/* Adds a mip to the small texture for rays; `bytes`: the encoded texels, for masks their alpha.
+ * Normals, occlusion and blended surfaces are skipped: rays do not use them. */
 static void keep_picture(texture *t, const float *level, const uint8_t *bytes, uint32_t w,
                          uint32_t h, uint32_t mip) {
     bool mask = t->format == MASU_TEXTURE_BC3_SRGB;
@@ -180,7 +180,7 @@ static void keep_picture(texture *t, const float *level, const uint8_t *bytes, u
     }
 }
 
-/* All mips of `level`, which is used up; `normals`, of the same size, may be NULL. */
+/* Makes all mips of `level` and overwrites it; `normals`, of the same size, may be NULL. */
 static void finish(texture *t, float *level, float *normals) {
     size_t texels = (size_t)t->width * t->height;
     float *scratch = allocate_level(t->width, t->height);
@@ -216,9 +216,9 @@ static void finish(texture *t, float *level, float *normals) {
 
 /* ---- the three kinds ---- */
 
-/* What alpha is meant for, where the model does not say: nothing where no texel is under the
- * cut-off, else a mask, if the picture looks like one. Never blending: it costs a draw for each
- * thing, and an order that meshes of many leaves do not have. */
+/* The meaning of alpha if the model does not specify it: none if no texel is below the cut-off;
+ * else a mask, if the texture looks like one. Never blending: it costs a draw per object and needs
+ * an order, which meshes with many leaves do not have. */
 static uint8_t judge_alpha(const maker *m, const request *wanted, const float *level, size_t texels) {
     uint64_t below = 0, less = 0, histogram[256] = {0};
     uint8_t meant = wanted->alpha;
@@ -241,7 +241,7 @@ static uint8_t judge_alpha(const maker *m, const request *wanted, const float *l
     return MASU_BAKE_ALPHA_OPAQUE;
 }
 
-/* Opacity as a picture: its alpha where that says something, else its brightness. */
+/* The channel of an opacity image: its alpha if that is not all opaque, else its brightness. */
 static uint32_t opacity_channel(const masu_bake_picture *p) {
     for (size_t i = 0; i < p->rgba.bytes; i += 4) {
         if (p->rgba.data[i + 3] != 255) return 3;
@@ -273,9 +273,9 @@ static void make_color(maker *m, texture *t) {
         }
         size_t texels = (size_t)w * h;
         request judged = t->wanted;
-        /* A picture of its own says what it is for. */
+        /* A separate opacity image is meant as opacity. */
         if (has_opacity && judged.alpha == MASU_BAKE_ALPHA_AUTO) judged.alpha = MASU_BAKE_ALPHA_COVERS;
-        /* Of emission nobody looks at it. */
+        /* Nothing uses the alpha of an emission map. */
         if (judged.slot != MASU_SLOT_BASE) judged.alpha = MASU_BAKE_ALPHA_OPAQUE;
         t->alpha = judge_alpha(m, &judged, level, texels);
         bool opaque = t->wanted.slot == MASU_SLOT_BASE ? t->alpha == MASU_BAKE_ALPHA_OPAQUE : !has_opacity;
@@ -287,7 +287,7 @@ static void make_color(maker *m, texture *t) {
     if (has_opacity) masu_bake_release(&opacity.rgba);
 }
 
-/* Heights as normals of a map of this size. */
+/* Converts heights to the normals of a map of this size. */
 static float *bump_level(const masu_bake_picture *p, const request *wanted, uint32_t w, uint32_t h) {
     const bool clamped[2] = {wanted->clamped[0] != 0, wanted->clamped[1] != 0};
     float *own = allocate_level(p->width, p->height);
@@ -302,7 +302,7 @@ static float *bump_level(const masu_bake_picture *p, const request *wanted, uint
     return level;
 }
 
-/* As normals of a map of this size. */
+/* Reads normals, or converts heights, for a map of this size. */
 static float *normal_level(const masu_bake_picture *p, const request *wanted, uint32_t w, uint32_t h) {
     float scale = wanted->normal_scale;
     if (masu_bump_is_height(p->rgba.data, p->width, p->height, wanted->relief))
@@ -339,8 +339,8 @@ static void make_surface(maker *m, texture *t) {
     if (has[0] || has[1] || has[2]) {
         const masu_bake_picture *size = has[0] ? &p[0] : has[1] ? &p[1] : &p[2];
         uint32_t w = size->width, h = size->height;
-        /* No smaller than the normals: else they would make it rougher where they are still
-         * seen. */
+        /* At least the size of the normal map: a smaller roughness map would add the roughness of
+         * filtered normals where the normals are still visible. */
         if (has[2] && w < p[2].width) w = p[2].width;
         if (has[2] && h < p[2].height) h = p[2].height;
         float *level = allocate_level(w, h), *normals = NULL;
@@ -390,7 +390,7 @@ static uint32_t obtain(maker *m, const request *wanted) {
     masu_cli_progress("texture %u", m->count + 1);
     switch (wanted->slot) {
     case MASU_SLOT_NORMAL: make_normal(m, t); break;
-    case MASU_SLOT_OCCLUSION: /* one channel, as roughness alone */
+    case MASU_SLOT_OCCLUSION: /* one channel, like roughness without metallic */
     case MASU_SLOT_COAT:
     case MASU_SLOT_SURFACE:
         if (wanted->apart)
@@ -410,7 +410,7 @@ static void ask_for_normals(request *r, uint32_t which, const masu_bake_maps *ma
     for (int i = 0; i < 2 && r->relief; i++) r->clamped[i] = maps->wrap[i] == 1;
 }
 
-/* base: its texture, or NONE. What may be blended but is opaque all over is not. */
+/* base: its texture, or NONE. A material that may be blended but is opaque everywhere is not. */
 static bool is_blended(const maker *m, const masu_bake_maps *maps, const masu_blob_material *material, uint32_t base) {
     if (maps->alpha == MASU_BAKE_ALPHA_BLEND &&
         (maps->additive || material->opacity < 0.999f || maps->colored == MASU_BAKE_COLORED_ALPHA))
@@ -419,7 +419,8 @@ static bool is_blended(const maker *m, const masu_bake_maps *maps, const masu_bl
     return t && t->format == MASU_TEXTURE_BC3_SRGB && t->alpha == MASU_BAKE_ALPHA_BLEND;
 }
 
-/* A coat has normals of its own in the place of a map of emission, beside those of the base. */
+/* A clear coat has a separate normal map, in addition to the base's, in the slot of an emission
+ * map. */
 static bool has_coat_relief(const maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
                             const uint32_t slots[MASU_SLOT_COUNT]) {
     return maps->image[MASU_BAKE_COAT_NORMAL] != MASU_BLOB_NONE && maps->image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE &&
@@ -427,7 +428,7 @@ static bool has_coat_relief(const maker *m, const masu_bake_maps *maps, const ma
            !is_blended(m, maps, material, slots[MASU_SLOT_BASE]);
 }
 
-/* The textures of a material by slot, NONE where there are none. */
+/* The textures of a material by slot; NONE if a slot is empty. */
 static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
                         uint32_t out[MASU_SLOT_COUNT]) {
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
@@ -452,7 +453,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             r.channel[0] = maps->channel[MASU_BAKE_ROUGHNESS];
             r.channel[1] = maps->channel[MASU_BAKE_METALLIC];
             r.gloss = maps->gloss;
-            /* Normals alone make a roughness map too, unless the surface is as rough as can be. */
+            /* A normal map without a roughness map also makes one, unless the roughness is 1. */
             if (maps->image[MASU_BAKE_NORMAL] != MASU_BLOB_NONE && maps->relief_of != MASU_BAKE_RELIEF_OF_COAT &&
                 (r.image[0] != MASU_BLOB_NONE || material->roughness < 0.99f)) {
                 ask_for_normals(&r, 2, maps);
@@ -507,7 +508,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
 
 /* ---- arrays ---- */
 
-static const texture *sorted; /* qsort has no other way to give its comparison anything */
+static const texture *sorted; /* qsort cannot pass a context to its comparison */
 
 static int compare(const void *a, const void *b) {
     const uint32_t i = *(const uint32_t *)a, j = *(const uint32_t *)b;
@@ -523,7 +524,7 @@ static bool same_array(const texture *a, const texture *b) {
     return a->format == b->format && a->width == b->width && a->height == b->height;
 }
 
-/* Numbers the arrays; returns how many. `made`: of order. */
+/* Numbers the arrays; returns how many. `made`: the length of `order`. */
 static uint32_t number_arrays(maker *m, uint32_t *made) {
     *made = 0;
     free(m->order);
@@ -616,8 +617,8 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         }
         if (t->absolute) material->roughness = 1;
     }
-    /* An emissive factor is often white and meant for its map: without the map it would be a lamp.
-     * Only an unlit material keeps it, since it is its colour. */
+    /* An emissive factor is often white and only meant to scale its map: without the map, the
+     * material would be a lamp. Only an unlit material keeps the factor, since it is its colour. */
     if ((maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE || maps->dark) && !maps->unlit &&
         !(flags & 1u << MASU_SLOT_EMISSIVE)) {
         memset(material->emissive, 0, sizeof material->emissive);
@@ -640,7 +641,7 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     material->flags = flags;
     if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
     material->layers = layers;
-    /* What is blended has no room for it: nor has it maps of the second coordinates
+    /* Blended materials have no room for it, and no maps of the second coordinates
      * (gltf_material.c). */
     uint32_t second = flags & MASU_MATERIAL_HAS_MAPS;
     if (!(flags & MASU_MATERIAL_IS_BLEND) && flags & MASU_MATERIAL_COAT_RELIEF) second |= 1u << MASU_SLOT_EMISSIVE;
@@ -656,8 +657,8 @@ static void forget(maker *m) {
     m->count = 0;
 }
 
-/* Along an axis on which coordinates stay in 0..1 a texture is shown once: clamped, its edge does
- * not take colour from the opposite one. Not where a detail repeats it more often. */
+/* On an axis whose coordinates are all in 0..1 the texture appears once, so it is clamped: its edge
+ * is then not filtered with the opposite one. Not if a detail texture repeats it more often. */
 static void clamp_what_is_shown_once(masu_bake_content *content) {
     size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
     const float *texcoords = MASU_BAKE_ARRAY(content, MASU_BLOB_TEXCOORDS, const float);

@@ -1,6 +1,6 @@
 /* trace_texture.c: see trace_texture.h.
  *
- * A picture is the whole chain of mips down to one texel: the last texel is the mean. */
+ * A small texture is the whole mip chain down to one texel, which is the mean. */
 #include "bake/texture/trace_texture.h"
 
 #include <math.h>
@@ -78,7 +78,7 @@ float masu_bake_trace_least(const masu_bake_content *content, const masu_blob_ma
     return row ? row->least : 0;
 }
 
-/* Marks the rows that materials of traced triangles use. */
+/* Marks the rows that the materials of traced triangles use. */
 static void mark(const masu_bake_content *content, unsigned char *used) {
     static const uint32_t slots[] = {MASU_SLOT_BASE, MASU_SLOT_SURFACE, MASU_SLOT_EMISSIVE};
     const masu_bake_trace_row *rows = (const void *)content->pictures.data;
