@@ -1,8 +1,8 @@
-/* assimp_material.c: materials and the names of their pictures; see assimp.h.
+/* assimp_material.c: materials and the names of their images; see assimp.h.
  *
- * Of glTF none of this is used (gltf_material.c). A base colour is linear; the colours of older
- * formats (OBJ, AC3D) were chosen on a screen and are decoded from sRGB. A specular exponent n
- * becomes the roughness (2 / (n + 2))^(1/4), at which GGX has the same lobe width. */
+ * Not used for glTF (gltf_material.c). A base colour is linear. Colours of older formats (OBJ,
+ * AC3D) were chosen on a screen and are decoded from sRGB. A specular exponent n becomes the
+ * roughness (2 / (n + 2))^(1/4), at which GGX has the same lobe width. */
 #include "bake/import/assimp.h"
 #include "bake/import/picture_path.h"
 
@@ -35,11 +35,11 @@ static bool get_factor(const struct aiMaterial *m, const char *key, double *out)
 }
 
 #define KEY(name) KEY_OF(name)       /* Assimp's macros are "key", type, index */
-#define KEY_OF(key, type, index) key /* and type and index are 0 for all of these */
+#define KEY_OF(key, type, index) key /* type and index are 0 for all of these */
 
 /* ---- textures ---- */
 
-/* The picture at `path`: "*3" or a name that the file embeds, else a file beside the model. */
+/* The image at `path`: "*3" or the name of an embedded image, else a file next to the model. */
 static uint32_t image_of(masu_import *m, const struct aiString *path) {
     char text[sizeof path->data + 1];
     int length = masu_import_length(path);
@@ -108,7 +108,7 @@ static bool take_map(masu_import *m, const struct aiMaterial *from, const map_re
         masu_import_length(&path) == 0) {
         return false;
     }
-    if (!masu_bake_has_maps(to)) { /* the first one speaks for all */
+    if (!masu_bake_has_maps(to)) { /* the first one decides for all */
         to->wrap[0] = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, wanted->type);
         to->wrap[1] = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, wanted->type);
     }
@@ -128,8 +128,8 @@ static bool same_texture(const struct aiMaterial *m, enum aiTextureType a, enum 
            memcmp(x.data, y.data, (size_t)masu_import_length(&x)) == 0;
 }
 
-/* Whether the format itself says that the alpha of a picture is what is there of the surface:
- * AC3D, and what Assimp has a flag for. */
+/* True if the format defines the alpha of a texture as coverage: AC3D, and formats for which Assimp
+ * has a flag. */
 static bool alpha_covers(const masu_import *m, const struct aiMaterial *from) {
     const char *dot = strrchr(m->path, '.');
     int flags = 0;
@@ -143,7 +143,7 @@ static void convert_alpha(const masu_import *m, const struct aiMaterial *from, m
     if (alpha_covers(m, from)) maps->alpha = MASU_BAKE_ALPHA_COVERS;
 }
 
-/* OBJ's -bm, the height of 3DS and FBX. */
+/* The height scale: OBJ's -bm, 3DS and FBX. */
 static double bump_strength(const struct aiMaterial *from, enum aiTextureType type) {
     double scale = 1;
     ai_real value = 1;
@@ -167,7 +167,7 @@ static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from
         {MASU_BAKE_OPACITY, aiTextureType_OPACITY, 0},
         {MASU_BAKE_OCCLUSION, aiTextureType_AMBIENT_OCCLUSION, 0},
     };
-    /* Both in one picture: green and blue, as in glTF. */
+    /* Both in one image: green and blue, as in glTF. */
     static const map_request packed[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 1},
                                          {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 2}};
     static const map_request apart[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 0},
@@ -188,10 +188,10 @@ static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from
     return maps;
 }
 
-/* Types of texture that nothing is made of. */
+/* False for types of texture that are ignored. */
 static bool is_used(const struct aiMaterial *m, int type) {
     switch (type) {
-    case aiTextureType_HEIGHT: /* where there are normals these are it */
+    case aiTextureType_HEIGHT: /* normals, if the material has any */
         return !aiGetMaterialTextureCount(m, aiTextureType_NORMALS) &&
                !aiGetMaterialTextureCount(m, aiTextureType_NORMAL_CAMERA);
     case aiTextureType_BASE_COLOR:
@@ -219,7 +219,7 @@ static void note_textures(masu_import *m, const struct aiMaterial *material) {
                 continue;
             }
             int length = masu_import_length(&path);
-            int skip = length > 60 ? length - 60 : 0; /* the end of a path says most */
+            int skip = length > 60 ? length - 60 : 0; /* the end of a path is the most specific */
             masu_bake_buffer name = {0};
             masu_bake_append_text(&name, skip ? "..." : "");
             masu_import_name(&name, path.data + skip, length - skip);
@@ -240,7 +240,7 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     bool linear = get_color(from, KEY(AI_MATKEY_BASE_COLOR), c);
     if (get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &gloss) &&
         get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c)) {
-        linear = true; /* of a specular-glossiness material */
+        linear = true; /* from a specular-glossiness material */
     }
     bool found = linear || get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c);
     for (int i = 0; found && i < 3; i++) {
@@ -252,8 +252,8 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     double intensity = 1;
     get_factor(from, KEY(AI_MATKEY_EMISSIVE_INTENSITY), &intensity);
     if (get_color(from, KEY(AI_MATKEY_COLOR_EMISSIVE), c)) {
-        /* In older formats emission is mostly a way to brighten what is lit: the two were summed
-         * on the screen. Only what emits more than it reflects is a light. */
+        /* In older formats, emission mostly brightens lit surfaces: the two were summed on the
+         * screen. Only a surface that emits more than it reflects is a light. */
         double diffuse[4] = {0, 0, 0, 1};
         if (!linear && get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), diffuse) &&
             fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {
@@ -294,8 +294,8 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     }
 }
 
-/* Whether a highlight of an older format loses its colour; its exponent becomes the roughness.
- * Materials that Assimp adds, which have no name or this one, have a colour, too. */
+/* True if a highlight of an older format loses its colour; its exponent becomes the roughness.
+ * Materials that Assimp adds, with no name or with this one, have a specular colour too. */
 static bool has_phong(const struct aiMaterial *from) {
     double c[4] = {0, 0, 0, 0}, value;
     struct aiString name = {0};
@@ -328,14 +328,14 @@ const masu_import_given *masu_import_read_material(masu_import *m, unsigned inde
     convert_shine(from, to);
     m->phong += has_phong(from);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
-    /* Many files of Collada and 3DS say 0 where they mean that nothing shines through. */
+    /* Many Collada and 3DS files have 0 for opaque surfaces. */
     if (opacity <= 0 || alpha <= 0) {
         m->invisible++;
         opacity = opacity <= 0 ? 1 : opacity;
         alpha = alpha <= 0 ? 1 : alpha;
     }
     made->maps = convert_maps(m, from);
-    /* One number under two names in some formats, so not their product. */
+    /* Some formats store one number under two names, so the product would be wrong. */
     alpha = alpha < opacity ? alpha : opacity;
     if (made->maps.alpha != MASU_BAKE_ALPHA_OPAQUE && made->maps.alpha != MASU_BAKE_ALPHA_MASK &&
         alpha < 0.999) {
@@ -356,7 +356,7 @@ const masu_import_given *masu_import_read_material(masu_import *m, unsigned inde
 uint32_t masu_import_material(masu_import *m, unsigned index, const double *color, bool colored) {
     const masu_import_given *from = masu_import_read_material(m, index);
     masu_blob_material to = from->material;
-    /* The file has none: colours are all there is. */
+    /* The file has no material: its colours are the only data. */
     bool none = (color || (colored && !m->given)) && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0;
     masu_bake_maps maps = from->maps;
     for (int k = 0; k < 3 && (color || none); k++)

@@ -1,4 +1,4 @@
-/* assimp_mesh.c: meshes, and what of them cannot be drawn; see assimp.h. */
+/* assimp_mesh.c: converts meshes and reports triangles that cannot be drawn; see assimp.h. */
 #include "bake/import/assimp.h"
 #include "bake/import/vertex_color.h"
 #include "bake/mesh/triangles.h"
@@ -50,8 +50,8 @@ void masu_import_report_losses(masu_import *m) {
     }
 }
 
-/* KHR_texture_transform and its like: scale, then move; turns are warned of. Assimp's v grows
- * upwards. */
+/* KHR_texture_transform and its equivalents: scale, then translate; rotations cause a warning.
+ * Assimp's v grows upwards. */
 static bool texture_transform(const masu_import *m, const struct aiMesh *mesh,
                               struct aiUVTransform *out) {
     const struct aiScene *s = m->source;
@@ -68,8 +68,8 @@ static bool texture_transform(const masu_import *m, const struct aiMesh *mesh,
     return false;
 }
 
-/* Two floats per vertex, v down the picture, of the channel that the base colour uses; NULL if the
- * mesh has none. free() it. */
+/* Two floats per vertex, v down the image, of the channel that the base colour uses; NULL if the
+ * mesh has none. The caller frees it. */
 static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
     const struct aiScene *s = m->source;
     int channel = 0;
@@ -103,7 +103,7 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
     return out;
 }
 
-/* Triangles of one material, times a colour (or NULL). */
+/* Adds triangles of one material, times a colour (or NULL). */
 static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent,
                      masu_bake_triangles *part, const double *color, masu_bake_losses *lost) {
     part->material = masu_import_material(m, mesh->mMaterialIndex, color, part->colors != NULL);
@@ -113,8 +113,7 @@ static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent,
         m->full = true;
 }
 
-/* A part for each colour, or one with colours at its vertices. Of glTF it is done already
- * (gltf_mesh.c). */
+/* Adds a part for each colour, or one with vertex colours. For glTF, gltf_mesh.c has done this. */
 static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent,
                         const masu_bake_triangles *all, masu_bake_losses *lost) {
     masu_bake_pool pool = {0};
@@ -186,7 +185,7 @@ void masu_import_mesh(masu_import *m, unsigned index) {
     _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float), "Assimp built for double");
     const masu_import_given *given = masu_import_read_material(m, mesh->mMaterialIndex);
     float *texcoords = NULL;
-    /* The grain of an anisotropy is along u. */
+    /* The direction of an anisotropy is along u. */
     if (m->wanted == MASU_BAKE_TEXTURES_FORCED || masu_bake_has_maps(&given->maps) ||
         (given->material.anisotropy > 0 && mesh->mTextureCoords[0])) {
         texcoords = texcoords_of(m, mesh);

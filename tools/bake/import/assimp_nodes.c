@@ -1,4 +1,4 @@
-/* assimp_nodes.c: nodes become instances, with the lights that hang on them; see assimp.h. */
+/* assimp_nodes.c: converts nodes to instances, with their lights; see assimp.h. */
 #include "bake/import/assimp.h"
 #include "bake/scene/camera.h"
 #include "bake/scene/sun.h"
@@ -6,17 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More nodes than any model has; a cycle among nodes ends here too. */
+/* More nodes than any real model; this limit also ends a cycle of nodes. */
 #define NODES_MAX 4000000u
-#define LIGHTS_MAX 4096u /* looked for among the nodes */
+#define LIGHTS_MAX 4096u /* searched for among the nodes */
 #define CAMERAS_MAX 256u
 
 static bool same_set(const masu_import_set *g, const unsigned *meshes, unsigned count) {
     return g->count == count && memcmp(g->meshes, meshes, count * sizeof *meshes) == 0;
 }
 
-/* The primitives of an aiMesh, once more. Two primitives share no indices (src/scene/scene.c):
- * when a mesh is part of a second set, its indices are copied. */
+/* Adds the primitives of an aiMesh again. Two primitives cannot share indices (src/scene/scene.c):
+ * the indices are copied if a mesh is part of a second set. */
 static void add_parts(masu_import *m, unsigned mesh) {
     masu_bake_buffer *indices = &m->piece->section[MASU_BLOB_INDICES];
     for (uint32_t i = 0; i < m->mesh_parts[mesh].count; i++) {
@@ -33,7 +33,7 @@ static void add_parts(masu_import *m, unsigned mesh) {
     m->mesh_used[mesh] = true;
 }
 
-/* The masu mesh of a set of aiMeshes, or NONE if nothing of it can be drawn. */
+/* The masu mesh for a set of aiMeshes, or NONE if it has nothing to draw. */
 static uint32_t mesh_of(masu_import *m, const unsigned *meshes, unsigned count) {
     unsigned total = m->source->mNumMeshes, first = total;
     for (unsigned i = 0; i < count; i++) {
@@ -62,10 +62,11 @@ static uint32_t mesh_of(masu_import *m, const unsigned *meshes, unsigned count) 
 
 typedef struct visit {
     const struct aiNode *node;
-    masu_bake_affine parent; /* to world */
-    masu_bake_affine space;  /* to the object space of the parent instance; without one to world */
+    masu_bake_affine parent; /* transform to world space */
+    /* transform to the parent instance's object space; without one to world */
+    masu_bake_affine space;
     uint32_t parent_instance;
-    uint32_t parent_node; /* of `nodes`, where they are kept */
+    uint32_t parent_node; /* index into `nodes`, if they are kept */
 } visit;
 
 static masu_bake_affine node_transform(const struct aiNode *node) {
@@ -77,9 +78,8 @@ static masu_bake_affine node_transform(const struct aiNode *node) {
     return a;
 }
 
-/* glTF gives intensities; a white matt surface has the luminance of the intensity over pi and
- * the squared distance. A range that is not given stays 0 until the factor of the placement is
- * known. */
+/* glTF specifies intensities. A white matte surface has a luminance of intensity / pi / distance
+ * squared. An absent range remains 0 until the scale of the placement is available. */
 static bool convert_light(const struct aiLight *from, const masu_bake_affine *space, masu_blob_light *to) {
     const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
     masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y,
@@ -106,7 +106,7 @@ static bool convert_light(const struct aiLight *from, const masu_bake_affine *sp
     return true;
 }
 
-/* It shines along -z of its node; its units are lux. */
+/* The light points along -z of its node; its unit is lux. */
 static void convert_sun(masu_import *m, const struct aiLight *from, const masu_bake_affine *world) {
     const masu_bake_vec3 origin = {0, 0, 0};
     const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
@@ -123,7 +123,7 @@ static void convert_sun(masu_import *m, const struct aiLight *from, const masu_b
     masu_bake_add_sun(m->piece, name, direction, irradiance);
 }
 
-/* Lights of glTF alone are in known units. An aiScene ties a light to the node of its name. */
+/* Only glTF's lights have a defined unit. An aiScene links a light to a node by name. */
 static void convert_lights(masu_import *m, const struct aiNode *node, const masu_bake_affine *space,
                            const masu_bake_affine *world, uint32_t instance) {
     const struct aiScene *s = m->source;
@@ -149,8 +149,8 @@ static void convert_lights(masu_import *m, const struct aiNode *node, const masu
     }
 }
 
-/* As lights are: by the name of the node. What an aiCamera's angle is of, its importers do not
- * agree on; most mean the whole width. */
+/* Cameras are linked like lights, by the name of the node. Assimp's importers disagree on the angle
+ * of an aiCamera; most use the full width. */
 static void convert_cameras(masu_import *m, const struct aiNode *node, const masu_bake_affine *world) {
     const struct aiScene *s = m->source;
     int length = masu_import_length(&node->mName);
@@ -170,14 +170,14 @@ static void convert_cameras(masu_import *m, const struct aiNode *node, const mas
         char name[sizeof from->mName.data + 1];
         memcpy(name, from->mName.data, (size_t)length);
         name[length] = '\0';
-        /* Half its width, as wide as a node makes it. */
+        /* Half the width, scaled by the node. */
         double half = (double)masu_import_clamped((double)from->mOrthographicWidth, 0, 1e9) * masu_bake_length(direction);
         double fov = half > 0 ? 0.7 : 2 * atan(tan(width / 2) / aspect);
         masu_bake_add_camera(m->piece, name, fov, 2 * half / aspect, at, direction);
     }
 }
 
-/* Of a node's meshes those that no bones bend; as it has them, where that is all. */
+/* The node's meshes without bones; the node's own array if that is all of them. */
 static unsigned stiff_meshes(const masu_import *m, const struct aiNode *node,
                              const unsigned **meshes) {
     unsigned total = m->source->mNumMeshes, bent = 0, count = 0;
@@ -193,7 +193,7 @@ static unsigned stiff_meshes(const masu_import *m, const struct aiNode *node,
     return count;
 }
 
-/* False where the node shows nothing; *instance stays then. */
+/* Returns false and leaves *instance unchanged if the node shows nothing. */
 static bool make_instance(masu_import *m, const visit *v, const masu_bake_affine *world,
                           uint32_t *instance) {
     const struct aiNode *node = v->node;
@@ -220,7 +220,7 @@ static uint32_t keep_node(masu_import *m, const visit *v, const masu_bake_affine
     return (uint32_t)(m->nodes.bytes / sizeof node - 1);
 }
 
-/* Depth first with a stack of our own: a deep chain of nodes must not use up the machine's. */
+/* Depth first with an explicit stack: a deep chain of nodes must not overflow the call stack. */
 bool masu_import_walk(masu_import *m, bool convert) {
     masu_bake_buffer stack = {0};
     visit start = {m->source->mRootNode, masu_bake_identity(), masu_bake_identity(),
@@ -272,7 +272,7 @@ void masu_import_show_all(masu_import *m) {
             masu_bake_instance(m->piece, &identity, mesh, MASU_BLOB_NONE, MASU_BLOB_NONE);
         }
     }
-    for (unsigned i = 0; i < m->source->mNumMeshes; i++) { /* they point into `order` */
+    for (unsigned i = 0; i < m->source->mNumMeshes; i++) { /* sets point into `order` */
         while (m->sets[i]) {
             masu_import_set *g = m->sets[i];
             m->sets[i] = g->next;

@@ -1,10 +1,8 @@
-/* assimp_skin.c: what of a file moves: nodes, bones and animations become nodes, skins and clips;
- * see assimp.h.
+/* assimp_skin.c: converts nodes, bones and animations to nodes, skins and clips; see assimp.h.
  *
- * A mesh with bones is kept as it is bound. Each node that shows it gets a copy of its own, an
- * instance at the file's origin: where its vertices are follows from the joints alone, as glTF
- * has it, and they lie there as the rest pose has them, for whoever looks at the scene before it
- * moves. */
+ * A mesh with bones is kept in its bind pose. Each node that shows it gets its own copy: an
+ * instance at the file's origin. As in glTF, only the joints determine the vertex positions. The
+ * stored vertices are in the rest pose, for programs that use the scene before any animation. */
 #include "bake/import/assimp.h"
 #include "scene/skin.h"
 
@@ -25,7 +23,7 @@ bool masu_import_is_live(const struct aiScene *s, bool moving) {
     return live;
 }
 
-/* Morph targets of a model that moves. */
+/* The morph targets of a mesh if the model is animated; else 0. */
 static unsigned target_count(const masu_import *m, const struct aiMesh *mesh) {
     unsigned count = m->moving && mesh->mAnimMeshes ? mesh->mNumAnimMeshes : 0;
     return count < MASU_BLOB_MORPH_TARGETS_MAX ? count : MASU_BLOB_MORPH_TARGETS_MAX;
@@ -43,7 +41,7 @@ bool masu_import_bends(const masu_import *m, unsigned mesh) {
 typedef struct four {
     uint16_t bones[4];
     double weights[4];
-    unsigned count; /* of all that there were */
+    unsigned count; /* the count before the selection */
 } four;
 
 static void add_weight(four *f, unsigned bone, double weight) {
@@ -58,8 +56,8 @@ static void add_weight(four *f, unsigned bone, double weight) {
     f->bones[k] = (uint16_t)bone;
 }
 
-/* 65535 together: what rounding leaves goes to the largest. Nothing at all: a bone behind the
- * last. */
+/* The weights sum to 65535; the largest one absorbs the rounding error. A vertex without weights
+ * gets a joint behind the last bone. */
 static masu_bake_influence quantised(const four *f, unsigned bones) {
     masu_bake_influence out = {{(uint16_t)bones, 0, 0, 0}, {65535, 0, 0, 0}, 0};
     double sum = 0;
@@ -127,8 +125,8 @@ static uint32_t find_node(const masu_import *m, const struct aiString *name) {
     return MASU_BLOB_NONE;
 }
 
-/* The joints of a mesh: its bones, and one more for vertices without any, which stay with the
- * node that shows it. */
+/* The joints of a mesh: its bones, and one more for vertices without bones, which follow the node
+ * that shows the mesh. */
 static void add_joints(masu_import *m, const struct aiMesh *mesh, uint32_t shown_by) {
     for (unsigned b = 0; b <= mesh->mNumBones; b++) {
         masu_blob_joint joint = {.inverse_bind = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, .node = shown_by};
@@ -146,7 +144,7 @@ static void add_joints(masu_import *m, const struct aiMesh *mesh, uint32_t shown
     }
 }
 
-/* Where the joints put a vertex while all nodes rest. */
+/* A vertex in the rest pose: skinned with all nodes at rest. */
 static masu_blob_vertex at_rest(const masu_import *m, const masu_blob_skin_vertex *v,
                                 const masu_blob_joint *joints) {
     masu_bake_affine sum = {{0}};
@@ -179,7 +177,7 @@ static void grow(masu_blob_joint *joint, const float p[3]) {
 
 /* ---- Morph targets --------------------------------------------------------------------------- */
 
-/* Where a vertex of the skin is in the file. */
+/* The source in the file of a vertex of the skin. */
 typedef struct origin {
     const struct aiMesh *mesh;
     uint32_t vertex;
@@ -189,7 +187,7 @@ static masu_bake_vec3 vector_of(const struct aiVector3D *v) {
     return masu_bake_v3((double)v->x, (double)v->y, (double)v->z);
 }
 
-/* What a target adds to a vertex; nothing where it is not finite. */
+/* The difference that a target adds to a vertex; 0 if it is not finite. */
 static void delta_of(const origin *o, unsigned target, masu_bake_vec3 *position, masu_bake_vec3 *normal) {
     const struct aiAnimMesh *t = target < o->mesh->mNumAnimMeshes ? o->mesh->mAnimMeshes[target] : NULL;
     *position = *normal = masu_bake_v3(0, 0, 0);
@@ -212,7 +210,7 @@ static uint32_t packed_normal(masu_bake_vec3 n) {
     return out;
 }
 
-/* At the weights that the file rests with. */
+/* Applies the morph weights of the file's rest pose. */
 static void rest_morphed(const origin *o, unsigned targets, masu_blob_vertex *v) {
     masu_bake_vec3 p = masu_bake_v3f(v->position), n = masu_bake_decode_normal(v->normal);
     bool any = false;
@@ -230,7 +228,7 @@ static void rest_morphed(const origin *o, unsigned targets, masu_blob_vertex *v)
     if (masu_bake_normalize(&n)) masu_bake_encode_normal(n, v->normal);
 }
 
-/* After all parts of a skin: targets are those of the mesh that has most. */
+/* Called after all parts of a skin; the number of targets is that of the mesh with the most. */
 static void add_targets(masu_import *m, const origin *origins, masu_blob_skin *skin) {
     masu_bake_content *c = m->piece;
     const struct aiMesh *most = NULL;
@@ -263,8 +261,8 @@ static void add_targets(masu_import *m, const origin *origins, masu_blob_skin *s
 
 /* ---- Parts ----------------------------------------------------------------------------------- */
 
-/* A part of a bent mesh, in the piece: its vertices at rest, its triangles. base: its joints
- * among the skin's. */
+/* Adds a part of a skinned mesh to the piece: its vertices in the rest pose and its triangles.
+ * base: its first joint in the skin. */
 static bool copy_part(masu_import *m, const masu_blob_primitive *from, uint32_t first_joint,
                       uint32_t base, const struct aiMesh *mesh, masu_bake_buffer *origins) {
     masu_bake_content *to = m->piece;
@@ -306,7 +304,7 @@ static bool copy_part(masu_import *m, const masu_blob_primitive *from, uint32_t 
     return true;
 }
 
-/* What a skin would add, taken back. */
+/* Sizes before a skin is added, to undo it. */
 typedef struct mark {
     size_t bytes[MASU_BLOB_KIND_COUNT];
 } mark;
@@ -323,8 +321,8 @@ static void back_to(masu_bake_content *c, const mark *here) {
         c->section[kind].bytes = here->bytes[kind];
 }
 
-/* Of a node that shows meshes with bones: their joints together are a skin. False: nothing of it
- * can be drawn. */
+/* For a node that shows meshes with bones: all their joints together form a skin. False: it has
+ * nothing to draw. */
 static bool make_skin(masu_import *m, uint32_t node, masu_blob_skin *skin, uint32_t *instance,
                       masu_bake_buffer *origins) {
     masu_bake_content *c = m->piece;
@@ -368,8 +366,8 @@ static bool shows_bent(const masu_import *m, const struct aiNode *node) {
     return false;
 }
 
-/* Their nodes are those behind all of the file's, in the order of the skins: the instance of
- * each. */
+/* Makes all skins. Their nodes follow those of the file, in the order of the skins; `instances` has
+ * the instance of each. */
 static void make_skins(masu_import *m, masu_bake_buffer *instances) {
     for (uint32_t n = 0; n < node_count(m); n++) {
         masu_blob_skin skin;
@@ -392,7 +390,7 @@ static void make_skins(masu_import *m, masu_bake_buffer *instances) {
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
 
-/* A channel, its keys beside it until channels are sorted. */
+/* A channel with separate keys until the channels are sorted. */
 typedef struct track {
     masu_blob_channel channel;
     uint32_t order, unordered;
@@ -402,7 +400,7 @@ typedef struct track {
 static void add_key(track *t, double time, const double value[4], int components) {
     masu_blob_key key = {.time = (float)fmax(time, 0)};
     size_t count = t->keys.bytes / sizeof key;
-    if (!(time <= (double)MASU_CLIP_SECONDS_MAX)) return; /* nor NaN */
+    if (!(time <= (double)MASU_CLIP_SECONDS_MAX)) return; /* also false for NaN */
     double square = 0;
     for (int k = 0; k < components; k++) {
         if (!(fabs(value[k]) <= MASU_BAKE_COORDINATE_MAX)) return;
@@ -414,8 +412,8 @@ static void add_key(track *t, double time, const double value[4], int components
         key.value[k] = (float)(turns ? value[k] / sqrt(square) : value[k]);
     const masu_blob_key *keys = (const masu_blob_key *)(const void *)t->keys.data;
     if (count && !(key.time > keys[count - 1].time)) {
-        /* Several keys at one time are a step: the first holds until just before, the last one from
-         * then on. */
+        /* Several keys at one time are a step: the first one ends just before it, the last one
+         * applies from then on. */
         masu_blob_key *last = (masu_blob_key *)(void *)t->keys.data + count - 1;
         float before = nextafterf(key.time, -INFINITY);
         if (key.time < last->time) {
@@ -431,7 +429,7 @@ static void add_key(track *t, double time, const double value[4], int components
     masu_bake_append(&t->keys, &key, sizeof key);
 }
 
-/* What never changes needs one key. */
+/* A constant channel needs one key. */
 static void shorten(track *t) {
     size_t count = t->keys.bytes / sizeof(masu_blob_key);
     const masu_blob_key *keys = (const masu_blob_key *)(const void *)t->keys.data;
@@ -472,7 +470,7 @@ static void add_tracks(const struct aiNodeAnim *from, uint32_t node, double tick
     add_track(tracks, &scales);
 }
 
-/* Weights are of skins' nodes, which come last. */
+/* Weights belong to the skins' nodes, which follow all others. */
 static int by_node(const void *a, const void *b) {
     const track *x = a, *y = b;
     int weighs[2] = {x->channel.path == MASU_CHANNEL_WEIGHT, y->channel.path == MASU_CHANNEL_WEIGHT};
@@ -483,8 +481,8 @@ static int by_node(const void *a, const void *b) {
     return x->order < y->order ? -1 : 1;
 }
 
-/* Of the targets of the skin that a node shows. Assimp's name may have "*" and a number behind
- * the node's. */
+/* The weights of the targets of the skin that a node shows. Assimp's name may be the node's,
+ * followed by "*" and a number. */
 static void add_weights(masu_import *m, const struct aiMeshMorphAnim *from, double tick, masu_bake_buffer *tracks) {
     struct aiString name = from->mName;
     char *star = memchr(name.data, '*', (size_t)masu_import_length(&name));
@@ -508,7 +506,7 @@ static void add_weights(masu_import *m, const struct aiMeshMorphAnim *from, doub
     }
 }
 
-/* Channels are of the file's nodes until these have their numbers. */
+/* Channels refer to the file's nodes until those have their final numbers. */
 static void make_clip(masu_import *m, const struct aiAnimation *from) {
     masu_bake_content *c = m->piece;
     masu_bake_buffer tracks = {0};
@@ -562,10 +560,10 @@ static void add_node(masu_import *m, const masu_bake_affine *local, uint32_t par
     masu_bake_append(&m->piece->section[MASU_BLOB_MODEL_NODES], &node, sizeof node);
 }
 
-/* Those that show something, joints, what clips move, and all above them. */
+/* Keeps nodes that show something, joints, nodes that clips animate, and all their ancestors. */
 static void make_nodes(masu_import *m) {
     uint32_t count = node_count(m), next = 0;
-    for (uint32_t n = count; n > 0; n--) { /* children behind their parents */
+    for (uint32_t n = count; n > 0; n--) { /* children follow their parents */
         masu_import_node *node = &NODES(m)[n - 1];
         node->needed = node->needed || node->instance != MASU_BLOB_NONE;
         if (node->needed && node->parent != MASU_BLOB_NONE) NODES(m)[node->parent].needed = true;

@@ -1,25 +1,25 @@
-/* gltf.h: our reader of glTF 2.0, .gltf and .glb; runs in a child process (import.h).
+/* gltf.h: Masu's reader for glTF 2.0, .gltf and .glb; runs in a child process (import.h).
  *
- * It fills what Assimp would (an aiScene, assimp.h), so that one converter makes pieces of both, and hands
- * materials over in our own form, since Assimp's keep too little of glTF's. Why a reader of ours: Assimp 5.2 knows
- * glTF of 2019, and drops what it does not know without a word; Debian's tinygltf is C++, brings a JSON parser and a
- * picture reader of its own, and knows neither quantization nor meshopt. jansson, which the tools read JSON
- * with, and meshoptimizer, which makes LODs, are here anyway.
+ * It fills an aiScene, as Assimp does (assimp.h), so that one converter makes the pieces of both.
+ * Materials have a separate form, because Assimp's lose too much of glTF's. Reasons for a separate
+ * reader: Assimp 5.2 supports the glTF of 2019 and silently drops unknown features. Debian's
+ * tinygltf is C++, includes a JSON parser and an image decoder, and supports neither quantization
+ * nor meshopt. The tools already use jansson for JSON and meshoptimizer for LODs.
  *
  *   gltf.c            a file: its two containers, buffers, extensions that it requires, notes
  *   gltf_json.c       members of its JSON, each of a type
  *   gltf_access.c     views and accessors to numbers; EXT_meshopt_compression
- *   gltf_material.c   materials and the names of their pictures
- *   gltf_mesh.c       primitives: triangles, morph weights, colours of vertices
+ *   gltf_material.c   materials and the names of their images
+ *   gltf_mesh.c       primitives: triangles, morph weights, vertex colours
  *   gltf_nodes.c      nodes, instances, skins, lights, cameras
  *   gltf_clip.c       animations
  *   gltf_draco.cpp    KHR_draco_mesh_compression, by libdraco
  *
- * Nothing in a file is believed: every index, view and accessor is checked before it is followed. The first thing
- * that is wrong ends the reading, with a line that names its place. What is well-formed but of a kind that is not
- * read is counted in a note, one for each kind with the first name, and becomes one warning.
+ * Files are untrusted: every index, view and accessor is checked before use. The first error ends
+ * the reading, with a message that names its position. Well-formed features that are not supported
+ * are counted in a note, one for each kind with the first name; each note becomes one warning.
  *
- * All memory is of one pool, which masu_gltf_release frees. */
+ * All memory is in one pool, which masu_gltf_release frees. */
 #ifndef MASU_BAKE_GLTF_H
 #define MASU_BAKE_GLTF_H
 
@@ -38,49 +38,49 @@ typedef struct masu_gltf_note {
     uint64_t count;
 } masu_gltf_note;
 
-/* A material, with what it asks of its meshes. */
+/* A material, with the vertex data that it needs. */
 typedef struct masu_gltf_material {
     masu_import_given given;
     int set;         /* of the texture coordinates: TEXCOORD_n */
-    double uv[6];    /* rows of what turns them into those of its pictures */
-    int second_set;      /* the same of the maps of given.maps.second */
+    double uv[6];    /* rows of the transform from them to texture coordinates */
+    int second_set;      /* the same for the maps of given.maps.second */
     double second_uv[6];
     double alpha;    /* of the base colour */
     bool blends, unlit;
 } masu_gltf_material;
 
-/* A primitive with one skin and set of morph weights, as one aiMesh or, of many colours,
- * several. */
+/* A primitive with one skin and one set of morph weights: one aiMesh, or several if it has several
+ * colours. */
 typedef struct masu_gltf_made {
     struct masu_gltf_made *next;
     json_int_t skin;       /* -1: none */
-    const json_t *weights; /* the node's own, or NULL */
+    const json_t *weights; /* the weights of the node itself, or NULL */
     const unsigned *meshes;
     unsigned count;
 } masu_gltf_made;
 
 typedef struct masu_gltf {
-    const char *path;        /* NULL: of bytes alone, without files beside them */
+    const char *path;        /* NULL: only bytes, with no external files */
     const char *variant;     /* of KHR_materials_variants, or NULL */
     masu_bake_textures wanted;
     bool moving, plays;      /* morph targets are kept: always, or if there are animations */
-    masu_bake_content *piece; /* gets pictures */
+    masu_bake_content *piece; /* receives the images */
     masu_bake_buffer *warnings, *error;
     json_t *root;
     masu_bake_pool pool;
-    masu_gltf_bytes file, chunk; /* the binary one of a .glb */
-    masu_gltf_bytes *buffers, *views; /* views: those that have been unpacked */
+    masu_gltf_bytes file, chunk; /* chunk: the binary chunk of a .glb */
+    masu_gltf_bytes *buffers, *views; /* views: only those that have been decompressed */
     size_t buffer_count, view_count;
-    char where[192]; /* what is being read, for errors */
+    char where[192]; /* the current object, for errors */
     masu_gltf_note *notes;
     json_int_t variant_index; /* -1: none */
-    masu_gltf_material *materials; /* of the file, and behind them the default one */
+    masu_gltf_material *materials; /* of the file, then the default one */
     size_t material_count;
     masu_bake_buffer given;  /* masu_import_given: by aiMesh.mMaterialIndex */
     masu_bake_buffer meshes; /* struct aiMesh * */
     masu_gltf_made **made;   /* by mesh of the file */
     size_t mesh_count;
-    struct aiNode *nodes; /* by node of the file, then instances, then a root */
+    struct aiNode *nodes; /* by node of the file; then instances, then a root */
     size_t node_count;
     masu_bake_buffer lights; /* struct aiLight * */
     masu_bake_buffer ranges; /* float, one of each light */
@@ -88,36 +88,36 @@ typedef struct masu_gltf {
     struct aiScene scene;
 } masu_gltf;
 
-/* Whether a file is glTF, by its name or its first bytes (.vrm, ...). */
+/* True if a file is glTF, by its name or its first bytes (.vrm, ...). */
 bool masu_gltf_is_file(const char *path);
-/* Reads all of it; g holds path, variant, wanted, piece, warnings and error. False: one line in
- * error. */
+/* Reads the whole file; set path, variant, wanted, piece, warnings and error of g first. False: one
+ * line in error. */
 bool masu_gltf_read(masu_gltf *g);
-/* The same of bytes. */
+/* The same for a file in memory. */
 bool masu_gltf_read_bytes(masu_gltf *g, const unsigned char *data, size_t bytes);
 void masu_gltf_release(masu_gltf *g);
 
 /* ---- gltf.c ---- */
 
-/* One line, behind g->where; the first one stays. Always false. */
+/* Writes one line, prefixed by g->where, unless there already is an error. Always returns false. */
 bool masu_gltf_fail(masu_gltf *g, const char *format, ...);
 bool masu_gltf_failed(const masu_gltf *g);
-/* Another one of a kind that is not read; first: what it is called. */
+/* Counts an object with an unsupported feature; first: the object's name. */
 void masu_gltf_note_one(masu_gltf *g, const char *what, const char *first);
 void masu_gltf_note_many(masu_gltf *g, uint64_t count, const char *what, const char *first);
-/* "meshes", 3: says where we are, with its name if it has one. */
+/* "meshes", 3: sets g->where to the current object, with its name if it has one. */
 void masu_gltf_at(masu_gltf *g, const char *array, size_t index, const json_t *object);
-/* What the object is called, or "meshes[3]"; of the pool. */
+/* The object's name, or "meshes[3]"; allocated in the pool. */
 const char *masu_gltf_name_of(masu_gltf *g, const char *array, size_t index, const json_t *object);
-/* The bytes of a URI: of data, or of a file beside the model. False: they are not there. */
+/* The bytes of a URI: `data:`, or a file next to the model. False: not available. */
 bool masu_gltf_fetch(masu_gltf *g, const char *uri, masu_gltf_bytes *out);
-/* The path of a URI, where picture_path.h finds it; of the pool. NULL: it is of no file. outside:
- * it must not be read. */
+/* The path of a URI, by the search of picture_path.h; allocated in the pool. NULL: the URI names no
+ * file. outside: the file must not be read. */
 const char *masu_gltf_path(masu_gltf *g, const char *uri, bool *outside);
 bool masu_gltf_is_data(const char *uri);
 void *masu_gltf_take(masu_gltf *g, size_t count, size_t size);
 
-/* ---- gltf_json.c: absent members leave the output; others of a wrong type fail ---- */
+/* ---- gltf_json.c: absent members do not change the output; a wrong type fails ---- */
 
 const json_t *masu_gltf_object(masu_gltf *g, const json_t *of, const char *name);
 const json_t *masu_gltf_array(masu_gltf *g, const json_t *of, const char *name);
@@ -130,25 +130,25 @@ bool masu_gltf_size(masu_gltf *g, const json_t *of, const char *name, uint64_t *
 /* An index below `count`; -1: absent. False: failed. */
 bool masu_gltf_index(masu_gltf *g, const json_t *of, const char *name, size_t count, json_int_t *out);
 const json_t *masu_gltf_extension(masu_gltf *g, const json_t *of, const char *name);
-/* An element of an array of the file that masu_gltf_index has checked; NULL and failed: not an
- * object. */
+/* An element of an array of the file; masu_gltf_index has checked the index. NULL and failed: not
+ * an object. */
 const json_t *masu_gltf_element(masu_gltf *g, const char *array, json_int_t index);
 size_t masu_gltf_count(const masu_gltf *g, const char *array);
 
 /* ---- gltf_access.c ---- */
 
-/* The numbers of an accessor, integers that are normalised as fractions. components: what it
- * must have, or 0. NULL: failed. */
+/* The numbers of an accessor; normalised integers become fractions. components: the required
+ * number, or 0. NULL: failed. */
 float *masu_gltf_floats(masu_gltf *g, json_int_t accessor, unsigned components, uint32_t *count,
                         unsigned *found);
-/* Of unsigned integers alone. */
+/* Accepts only unsigned integers. */
 uint32_t *masu_gltf_integers(masu_gltf *g, json_int_t accessor, unsigned components, uint32_t *count);
-/* The bytes of a view, unpacked if it is compressed. */
+/* The bytes of a view, decompressed if necessary. */
 bool masu_gltf_view(masu_gltf *g, json_int_t view, masu_gltf_bytes *out, size_t *stride);
 
 /* ---- gltf_draco.cpp ---- */
 
-/* What a compressed primitive holds. Attributes are floats, of joints too. */
+/* A decompressed primitive. All attributes are floats, including joints. */
 typedef struct masu_gltf_draco {
     void *mesh;
     uint32_t points, faces;
@@ -159,7 +159,7 @@ extern "C" {
 #endif
 bool masu_gltf_draco_open(const unsigned char *data, size_t bytes, masu_gltf_draco *out);
 void masu_gltf_draco_indices(const masu_gltf_draco *draco, uint32_t *out); /* 3 * faces */
-/* Components of an attribute, or 0; 4 at most. */
+/* Components of an attribute, at most 4; 0: absent. */
 unsigned masu_gltf_draco_components(const masu_gltf_draco *draco, uint32_t id);
 bool masu_gltf_draco_floats(const masu_gltf_draco *draco, uint32_t id, unsigned components, float *out);
 void masu_gltf_draco_close(masu_gltf_draco *draco);
@@ -167,13 +167,13 @@ void masu_gltf_draco_close(masu_gltf_draco *draco);
 }
 #endif
 
-/* ---- the others; false: failed ---- */
+/* ---- the other files; false: failed ---- */
 
 bool masu_gltf_read_materials(masu_gltf *g);
-/* The number that an aiMesh has for a material of the file under a colour (linear, with alpha);
- * -1: the default. colored: MASU_BAKE_COLORED_*, of its vertices. */
+/* The aiMesh material number for a material of the file with a colour factor (linear, with alpha);
+ * -1: the default material. colored: MASU_BAKE_COLORED_*, of its vertices. */
 unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4], int colored);
-/* The aiMeshes of a mesh of the file under a skin and a node's morph weights. */
+/* The aiMeshes of a mesh of the file with a skin and a node's morph weights. */
 bool masu_gltf_make_mesh(masu_gltf *g, json_int_t mesh, json_int_t skin, const json_t *weights,
                          const masu_gltf_made **out);
 bool masu_gltf_read_nodes(masu_gltf *g);

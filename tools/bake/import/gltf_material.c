@@ -1,20 +1,20 @@
-/* gltf_material.c: materials of a glTF file and the names of their pictures; see gltf.h.
+/* gltf_material.c: materials of a glTF file and the names of their images; see gltf.h.
  * Over 700 lines: a reader for each extension of materials, which share how they read textures.
  *
- * A mesh has one set of texture coordinates here. It is that of the base colour, else of the first
- * map that there is, with its transform worked in (gltf_mesh.c); and a second one for opaque
- * materials, of the first map that wants other coordinates. A map that wants neither is left out,
- * with a note; but where all but colour and emission are repeated so many times more often, the
- * material's detail says it.
+ * A mesh has one set of texture coordinates: those of the base colour, else of the first map, with
+ * the texture transform applied (gltf_mesh.c). Opaque materials have a second set, that of the
+ * first map with other coordinates. A map that uses neither set is dropped with a note. Exception:
+ * if all maps except colour and emission are repeated by the same factor, it becomes the material's
+ * detail.
  *
- * A coat has the mesh's normal where it names no picture, and one picture of normals is what a
- * surface has: coat and base have the same one, or only one of them has any; of two different ones
- * the coat's is left out, with a note.
+ * A clear coat without a normal map uses the mesh's normal. A surface has one normal map: base and
+ * coat share it, or only one of them has it. If both have different maps, the coat's is dropped
+ * with a note.
  *
- * What has no counterpart is brought near, and a note says so: glass of
- * KHR_materials_transmission is thin, what shines through has its base colour and what
- * KHR_materials_volume leaves of it; unlit surfaces emit their colour; specular and glossiness
- * become metallic and roughness, as the appendix of that extension has it. */
+ * Features without a counterpart are approximated, with a note. Glass of KHR_materials_transmission
+ * is thin; its transmitted light is tinted by the base colour and attenuated by
+ * KHR_materials_volume. Unlit surfaces emit their colour. Specular and glossiness become metallic
+ * and roughness, by the formula in the appendix of that extension. */
 #include "bake/import/gltf.h"
 
 #include "scene/material.h"
@@ -30,9 +30,9 @@ typedef struct texture {
     uint8_t wrap[2], nearest; /* compared as bytes */
 } texture;
 
-/* ---- pictures ---- */
+/* ---- images ---- */
 
-/* The piece's number of a picture; NONE with a note. */
+/* The piece's number for an image; NONE with a note. */
 static uint32_t add_image(masu_gltf *g, json_int_t index) {
     const json_t *image = masu_gltf_element(g, "images", index);
     json_int_t view = -1;
@@ -68,7 +68,7 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
     return made;
 }
 
-/* Whichever of a texture's pictures can be read: its own, else one of its extensions'. */
+/* The image of a texture that can be read: its own, else an extension's. */
 static bool source_of(masu_gltf *g, const json_t *about, json_int_t *image) {
     static const char *const others[] = {"EXT_texture_webp", "MSFT_texture_dds", "KHR_texture_basisu"};
     size_t images = masu_gltf_count(g, "images");
@@ -98,8 +98,8 @@ static bool read_sampler(masu_gltf *g, const json_t *about, texture *t) {
     return true;
 }
 
-/* The picture's coordinates are the set's, scaled, then turned, then moved. v is down the
- * picture, and a positive angle turns counter-clockwise as one sees it. */
+/* The texture coordinates are those of the set, scaled, then rotated, then translated. v points
+ * down the image, and a positive angle is counter-clockwise in the image. */
 static bool read_transform(masu_gltf *g, const json_t *info, texture *t) {
     const json_t *about = masu_gltf_extension(g, info, "KHR_texture_transform");
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0, set = t->set;
@@ -114,7 +114,7 @@ static bool read_transform(masu_gltf *g, const json_t *info, texture *t) {
     return true;
 }
 
-/* A textureInfo; image NONE: there is none. False: failed. */
+/* Reads a textureInfo; image NONE: absent. False: failed. */
 static bool read_texture(masu_gltf *g, const json_t *of, const char *member, texture *t) {
     const json_t *info = of ? masu_gltf_object(g, of, member) : NULL;
     json_int_t index = -1, image = -1;
@@ -150,11 +150,11 @@ static const int order[] = {MASU_BAKE_BASE,       MASU_BAKE_EMISSIVE,  MASU_BAKE
                             MASU_BAKE_OCCLUSION,  MASU_BAKE_COAT,      MASU_BAKE_COAT_ROUGHNESS,
                             MASU_BAKE_LOBE_COLOR, MASU_BAKE_LOBE_STRENGTH, MASU_BAKE_COAT_NORMAL};
 #define ORDER (sizeof order / sizeof *order)
-#define ORDER_COLORS 3 /* of them, the first: what a material's detail does not repeat */
+#define ORDER_COLORS 3 /* the first of them: maps that a material's detail does not repeat */
 
 static bool near(double a, double b) { return fabs(a - b) <= 1e-5 * fmax(1, fmax(fabs(a), fabs(b))); }
 
-/* How often b repeats in a along u and v, where it is that alone. */
+/* True if b's transform is only a repetition of a's; times: the factors along u and v. */
 static bool repeats(const texture *a, const texture *b, double times[2]) {
     if (a->set != b->set) return false;
     for (int k = 0; k < 2; k++) {
@@ -175,7 +175,7 @@ static void leave_out(masu_gltf *g, texture *t, const char *why) {
     t->image = MASU_BLOB_NONE;
 }
 
-/* Maps that share a texture of a set (blob.h): they have the same coordinates. */
+/* Maps that share a texture of a set (blob.h) have the same coordinates. */
 static uint8_t slot_of(int map) {
     static const uint8_t slots[MASU_BAKE_MAPS] = {
         [MASU_BAKE_BASE] = MASU_SLOT_BASE,           [MASU_BAKE_OPACITY] = MASU_SLOT_BASE,
@@ -187,8 +187,8 @@ static uint8_t slot_of(int map) {
     return slots[map];
 }
 
-/* A second set for maps that do not use the first: that of the first of them. What is blended
- * has none. */
+/* Chooses a second set for the maps that do not use the first: the set of the first of them.
+ * Blended materials have none. */
 static void use_second(masu_gltf *g, const maps *m, int map, const texture **second, masu_gltf_material *out, bool *used) {
     const texture *t = &m->all[map];
     double own[2];
@@ -196,7 +196,7 @@ static void use_second(masu_gltf *g, const maps *m, int map, const texture **sec
     *used = false;
     if (out->blends || out->unlit || (slot == MASU_SLOT_BASE)) return;
     if (*second && !(repeats(*second, t, own) && near(own[0], 1) && near(own[1], 1))) return;
-    for (size_t i = 0; i < ORDER; i++) { /* of the same texture all or none */
+    for (size_t i = 0; i < ORDER; i++) { /* maps of one texture: all or none */
         const texture *other = &m->all[order[i]];
         if (slot_of(order[i]) != slot || other->image == MASU_BLOB_NONE) continue;
         if (!(repeats(t, other, own) && near(own[0], 1) && near(own[1], 1))) return;
@@ -211,7 +211,7 @@ static void use_second(masu_gltf *g, const maps *m, int map, const texture **sec
     (void)g;
 }
 
-/* One set of coordinates for all; returns the map that has it, or NULL. */
+/* Chooses one set of coordinates for all maps; returns the map that has it, or NULL. */
 static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
     float *detail = out->given.material.detail;
     const texture *first = NULL, *second = NULL;
@@ -221,7 +221,8 @@ static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
         if (m->all[order[i]].image != MASU_BLOB_NONE) first = &m->all[order[i]];
     }
     if (!first) return NULL;
-    for (size_t i = ORDER_COLORS, seen = 0; i < ORDER && scaled; i++) { /* all but colours, alike */
+    /* all but colours, by the same factor */
+    for (size_t i = ORDER_COLORS, seen = 0; i < ORDER && scaled; i++) {
         const texture *t = &m->all[order[i]];
         double own[2];
         if (t->image == MASU_BLOB_NONE) continue;
@@ -283,7 +284,7 @@ static void note_texture(masu_gltf *g, const json_t *of, const char *member) {
     masu_gltf_note_one(g, what, g->where);
 }
 
-/* `name`: of the factor, for the note. */
+/* `name`: the factor's name, for the note. */
 static float limited(masu_gltf *g, double value, double low, double high, const char *name) {
     char what[128];
     snprintf(what, sizeof what, "materials have a \"%s\" beyond %g to %g: clamped", name, low,
@@ -292,7 +293,7 @@ static float limited(masu_gltf *g, double value, double low, double high, const 
     return masu_import_clamped(value, low, high);
 }
 
-/* Of a colour, with one note. */
+/* Limits the components of a colour, with one note. */
 static void limit_all(masu_gltf *g, double *values, int count, double high, const char *name) {
     double least = 0, most = 0;
     for (int k = 0; k < count; k++) {
@@ -322,13 +323,14 @@ static bool read_metallic(masu_gltf *g, const json_t *about, masu_gltf_material 
     return true;
 }
 
-#define APPROXIMATED 0.02 /* differences of reflectance up to this are not worth a note */
+#define APPROXIMATED 0.02 /* smaller differences of reflectance get no note */
 
 static double brightness(const double c[3]) {
     return sqrt(0.299 * c[0] * c[0] + 0.587 * c[1] * c[1] + 0.114 * c[2] * c[2]);
 }
 
-/* The metal share at which a dielectric of 0.04 and a metal of this colour reflect as both say. */
+/* The metallic value at which a mix of a dielectric of 0.04 and a metal of this colour has the
+ * given diffuse and specular reflectance. */
 static double solve_metallic(double diffuse, double specular, double rest) {
     const double plain = 0.04;
     if (specular < plain) return 0;
@@ -353,7 +355,7 @@ static bool read_glossiness(masu_gltf *g, const json_t *about, masu_gltf_materia
     limit_all(g, diffuse, 4, 1, "diffuseFactor");
     double rest = 1 - fmax(specular[0], fmax(specular[1], specular[2])), metallic = 0, worst = 0;
     bool pictured = m->all[MASU_BAKE_ROUGHNESS].image != MASU_BLOB_NONE;
-    if (pictured) { /* the factor is that of a picture */
+    if (pictured) { /* the factor scales a texture */
         masu_gltf_note_one(
             g, "materials have a specular colour texture: only its glossiness is used", g->where);
         rest = 1;
@@ -407,7 +409,7 @@ static bool read_emission(masu_gltf *g, const json_t *about, masu_gltf_material 
     return true;
 }
 
-/* Reflectance of a dielectric at normal incidence: that of its index of refraction times the
+/* The reflectance of a dielectric at normal incidence: that of its index of refraction times the
  * specular colour, at most 1, times the specular factor. */
 static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material *to, maps *m) {
     const json_t *specular = masu_gltf_extension(g, about, "KHR_materials_specular");
@@ -421,7 +423,7 @@ static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material 
         return false;
     if (!specular && !refraction) return true;
     factor = (double)limited(g, factor, 0, 1, "specularFactor");
-    /* 0 stands for infinity */
+    /* 0 means infinity */
     double root = (index - 1) / (index + 1), reflectance = index > 0 ? root * root : 1;
     if (!(index == 0 || index >= 1)) {
         masu_gltf_note_one(g, "materials have an \"ior\" below 1: taken for 1", g->where);
@@ -468,8 +470,8 @@ static bool read_anisotropy(masu_gltf *g, const json_t *about, masu_blob_materia
     return true;
 }
 
-/* A material has one lobe beyond the plain ones (blob.h): a coat comes first, then sheen,
- * anisotropy, colour. */
+/* A material has one additional lobe (blob.h). The order of priority is coat, sheen, anisotropy,
+ * colour. */
 static void settle_lobes(masu_gltf *g, masu_blob_material *to, maps *m) {
     float *hue = to->specular_color, *sheen = to->sheen_color;
     texture *maps_of[2] = {&m->all[MASU_BAKE_LOBE_COLOR], &m->all[MASU_BAKE_LOBE_STRENGTH]};
@@ -479,7 +481,7 @@ static void settle_lobes(masu_gltf *g, masu_blob_material *to, maps *m) {
     bool tinted = masu_is_colored(hue), colored = to->specular > 1 || tinted || (mapped && !shines);
     const char *first = to->coat > 0 ? "a clear coat" : shines ? "a sheen" : "an anisotropy";
     char what[128];
-    if (metal && !shines) colored = false; /* metals mirror their base colour */
+    if (metal && !shines) colored = false; /* metals reflect their base colour */
     if (shines && to->coat > 0) {
         masu_gltf_note_one(g, "materials have a clear coat and a sheen: the sheen is ignored", g->where);
         shines = false;
@@ -511,7 +513,7 @@ static void settle_lobes(masu_gltf *g, masu_blob_material *to, maps *m) {
     if (shines) to->specular = 0.5f;
 }
 
-/* One picture of normals for both, with its strength; see above. */
+/* One normal map for both layers, with its strength; see above. */
 static void settle_normals(masu_gltf *g, masu_gltf_material *out, maps *m, texture *coat, double scale[2]) {
     texture *base = &m->all[MASU_BAKE_NORMAL];
     double times[2];
@@ -564,7 +566,7 @@ static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to,
 }
 
 /* KHR_materials_volume: the light that is left after the thickness, as a factor of each surface
- * that a ray crosses: one if back faces are culled, else two. And its refraction. */
+ * that a ray crosses: one if back faces are culled, else two. Also sets its refraction. */
 static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *to) {
     const json_t *volume = masu_gltf_extension(g, about, "KHR_materials_volume");
     const json_t *refraction = masu_gltf_extension(g, about, "KHR_materials_ior");
@@ -579,7 +581,7 @@ static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *t
         masu_gltf_note_one(g, "materials have a thickness and a metallic factor: they do not refract", g->where);
     } else if (thickness > 0) {
         to->thickness = limited(g, thickness, 0, 65504, "thicknessFactor");
-        /* 0 stands for infinity */
+        /* 0 means infinity */
         to->ior = index == 0 ? 1000 : limited(g, fmax(index, 1), 1, 1000, "ior");
     }
     if (!(thickness > 0 && distance > 0)) return true;
@@ -588,8 +590,8 @@ static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *t
     return true;
 }
 
-/* Of what shines through a share is coloured; the alpha of the base colour counts where it is
- * blended anyway. */
+/* A share of the transmitted light is tinted. The alpha of the base colour applies only to
+ * materials that are blended anyway. */
 static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
     const json_t *through = masu_gltf_extension(g, about, "KHR_materials_transmission");
     masu_blob_material *to = &out->given.material;
@@ -600,7 +602,7 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
     factor = (double)limited(g, factor, 0, 1, "transmissionFactor") * (1 - (double)to->metallic);
     if (!(factor > 0) || out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) map->image = MASU_BLOB_NONE;
     if (!(factor > 0)) return true;
-    if (map->image != MASU_BLOB_NONE && out->blends) /* alpha of the base colour is taken */
+    if (map->image != MASU_BLOB_NONE && out->blends) /* the alpha of the base colour is in use */
         leave_out(g, map, "materials have a \"transmissionTexture\" and are alpha-blended: it is ignored");
     if (out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) {
         masu_gltf_note_one(
@@ -617,7 +619,7 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
     return true;
 }
 
-/* What is unlit sends its colour, whatever shines on it. */
+/* An unlit material emits its colour, independent of the lighting. */
 static void make_unlit(masu_gltf_material *out, maps *m) {
     masu_blob_material *to = &out->given.material;
     memcpy(to->emissive, to->base_color, sizeof to->emissive);
@@ -659,8 +661,8 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
     return !masu_gltf_failed(g);
 }
 
-/* Specular and glossiness become metallic and roughness by an inverse that is not exact: beside
- * materials that are metallic and roughness already, the same surface may look different. */
+/* Specular and glossiness become metallic and roughness by an inverse that is not exact. The same
+ * surface may look different next to materials that use metallic and roughness directly. */
 static void note_mixture(masu_gltf *g) {
     size_t count = masu_gltf_count(g, "materials"), glossy = 0;
     const char *first = NULL;
@@ -686,7 +688,7 @@ bool masu_gltf_read_materials(masu_gltf *g) {
         *out = (masu_gltf_material){.given = {masu_bake_default_material(), masu_bake_no_maps(), ""},
                                     .uv = {1, 0, 0, 0, 1, 0},
                                     .alpha = 1};
-        if (i == g->material_count) { /* what glTF takes where none is named */
+        if (i == g->material_count) { /* glTF's default if no material is named */
             masu_blob_material *to = &out->given.material;
             to->base_color[0] = to->base_color[1] = to->base_color[2] = 1;
             to->metallic = to->roughness = 1;
@@ -712,7 +714,8 @@ unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4
     for (int k = 0; k < 3; k++) {
         to->base_color[k] = masu_import_clamped((double)to->base_color[k] * color[k], 0, 1);
         if (!from->unlit) continue;
-        to->emissive[k] = to->base_color[k]; /* black, and with make_unlit's roughness not lit */
+        /* black; with make_unlit's roughness, lights do not affect it */
+        to->emissive[k] = to->base_color[k];
         to->base_color[k] = 0;
     }
     if (from->blends) alpha *= (double)masu_import_clamped(color[3], 0, 1);
@@ -725,7 +728,7 @@ unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4
     }
     size_t count = g->given.bytes / sizeof made;
     const masu_import_given *all = (const masu_import_given *)(const void *)g->given.data;
-    /* the last few: what one mesh asks for */
+    /* the last few: the variants of one mesh */
     for (size_t i = count; i > 0 && i + 256 > count; i--) {
         if (all[i - 1].name == made.name && memcmp(&all[i - 1].maps, &made.maps, sizeof made.maps) == 0 &&
             memcmp(&all[i - 1].material, to, sizeof *to) == 0)
