@@ -4,9 +4,9 @@
  *   texture "shadow2.rgb" tiled
  *   texture empty_texture_no_mapping skids
  *
- * Assimp knows AC3D, where an object has one, and would take the last line for it. Here all lines but
- * that of the base are left out. The other textures lie over the base (a light map, tyre marks) and
- * have coordinates of their own, which Assimp skips. */
+ * In AC3D an object has one texture, and Assimp would use the last line. This file removes all
+ * texture lines except the base. The other textures are overlays (a light map, tyre marks) with
+ * separate coordinates, which Assimp skips. */
 #include "bake/import/acc.h"
 
 #include <string.h>
@@ -17,7 +17,7 @@ bool masu_bake_is_acc(const char *path) {
     return length > 4 && strcasecmp(path + length - 4, ".acc") == 0;
 }
 
-/* Whether a line is a texture that is not the base. A name stands in quotes or has no spaces. */
+/* True if a line is a texture other than the base. A name is in quotes or has no spaces. */
 static bool is_layer(const char *line, size_t length) {
     static const char word[] = "texture";
     size_t at = sizeof word - 1;

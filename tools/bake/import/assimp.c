@@ -1,4 +1,4 @@
-/* assimp.c: Assimp, or our reader of glTF, reads a file; see assimp.h. */
+/* assimp.c: reads a file by Assimp, or by Masu's glTF reader; see assimp.h. */
 #include "bake/import/assimp.h"
 #include "bake/import/assimp_file.h"
 #include "bake/base/file.h"
@@ -99,7 +99,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
     } else if (parts.bytes == 0 && masu_bake_count(&m->bent, MASU_BLOB_PRIMITIVES) == 0) {
         masu_bake_append_text(error, "no triangles to draw");
         masu_import_report_losses(m);
-        if (m->warnings->bytes) { /* one line says why */
+        if (m->warnings->bytes) { /* the error is reported in one line */
             masu_bake_append_text(error, "; ");
             const char *end = memchr(m->warnings->data, '\n', m->warnings->bytes);
             size_t length = end ? (size_t)(end - (const char *)m->warnings->data) : 0;
@@ -121,12 +121,12 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
     masu_bake_release(&parts);
 }
 
-/* The library drops some of what is broken before we see it and says so in its log alone. Of its
- * many remarks those are passed on that speak of lost data, each once, a few at most. */
+/* Assimp drops some broken data itself and reports that only in its log. Messages about lost data
+ * are passed on, each once, a few at most. */
 static void note_remark(const char *text, char *user) {
     static const char *const losses[] = {"dropped", "out-of-range", "out of range", "discard"};
     masu_bake_buffer *remarks = (masu_bake_buffer *)(void *)user;
-    const char *colon = strstr(text, ": "); /* behind "Warn,  T0" */
+    const char *colon = strstr(text, ": "); /* after "Warn,  T0" */
     if (strncmp(text, "Warn", 4) != 0 || !colon) return;
     bool lost = false;
     for (size_t i = 0; i < sizeof losses / sizeof losses[0]; i++) {
@@ -151,14 +151,14 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
     if (properties) {
         aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
     }
-    /* Welding, dropping bad triangles and the like are done here, where every index is checked:
-     * each step of the library is one more that hostile data can break. */
+    /* This directory welds vertices, drops bad triangles and so on itself, with every index
+     * checked: each processing step of Assimp is another one that hostile data can break. */
     unsigned flags = aiProcess_Triangulate | aiProcess_GenUVCoords;
     struct aiLogStream log = {note_remark, (char *)(void *)warnings};
     aiAttachLogStream(&log);
     const struct aiScene *scene;
     masu_bake_buffer whole = {0}, text = {0};
-    const char *dialect = NULL; /* of a format that the library knows, as text that it reads */
+    const char *dialect = NULL; /* converted to text of a format that Assimp reads */
     if ((masu_bake_is_acc(path) || masu_bake_is_stl(path)) &&
         masu_bake_read_file(path, DIALECT_MAX, &whole)) {
         if (masu_bake_is_acc(path)) {
@@ -172,7 +172,7 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
         scene = aiImportFileFromMemoryWithProperties((const char *)text.data, (unsigned)text.bytes,
                                                      flags, dialect, properties);
     } else {
-        static masu_import_files files; /* the library keeps it */
+        static masu_import_files files; /* Assimp keeps the pointer */
         files.model = path;
         files.warnings = warnings;
         masu_import_use_files(&files);
@@ -185,7 +185,7 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
     return scene;
 }
 
-/* Its process ends after it: nothing is worth releasing. */
+/* The process ends after this function: releasing memory has no use. */
 void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece,
                           masu_bake_buffer *warnings, masu_bake_buffer *error) {
     masu_gltf g = {.path = path, .variant = wanted->variant, .wanted = wanted->textures, .piece = piece,

@@ -1,4 +1,4 @@
-/* assimp_file.c: see assimp_file.h. Nothing is written: a format that wants to gets no file. */
+/* assimp_file.c: see assimp_file.h. Files are never opened for writing. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/import/assimp_file.h"
 #include "bake/base/inside.h"
@@ -46,8 +46,8 @@ static void close_file(struct aiFileIO *io, struct aiFile *file) {
     free(file);
 }
 
-/* The library puts the model's folder before a name, and looks for variants of it that are not
- * there: what is behind the folder is the name that the file says. */
+/* Assimp prefixes a name with the model's folder and also tries variants that do not exist. The
+ * part after the folder is the name in the file. */
 static const char *find(const masu_import_files *files, const char *path, masu_bake_buffer *out) {
     struct stat about;
     const char *slash = strrchr(files->model, '/');

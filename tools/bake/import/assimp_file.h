@@ -1,6 +1,5 @@
-/* assimp_file.h: the files that Assimp opens: the model, and what that names as far as it may
- * (bake/base/inside.h). What lies elsewhere is not there for it, and one warning names the
- * first. */
+/* assimp_file.h: the files that Assimp opens: the model, and the files that it names if they are
+ * allowed (bake/base/inside.h). Other files appear as missing, and one warning names the first. */
 #ifndef MASU_BAKE_ASSIMP_FILE_H
 #define MASU_BAKE_ASSIMP_FILE_H
 
@@ -16,7 +15,7 @@ typedef struct masu_import_files {
     bool warned;
 } masu_import_files;
 
-/* The rest is the caller's to fill in; the struct outlives the import. */
+/* Sets the callbacks; the caller fills the other members. The struct outlives the import. */
 void masu_import_use_files(masu_import_files *files);
 
 #endif

@@ -1,5 +1,5 @@
-/* gltf.c: a glTF file is opened: its containers and buffers, what it requires, and notes of what
- * is not read; see gltf.h. */
+/* gltf.c: opens a glTF file: containers, buffers, required extensions, and notes of unsupported
+ * features; see gltf.h. */
 #include "bake/import/gltf.h"
 #include "bake/import/picture_path.h"
 
@@ -81,7 +81,7 @@ void *masu_gltf_take(masu_gltf *g, size_t count, size_t size) {
 
 bool masu_gltf_is_data(const char *uri) { return strncasecmp(uri, "data:", 5) == 0; }
 
-/* Whether a URI can name a file: its scheme is file, or it has none. One letter before a colon is a
+/* True if a URI can name a file: its scheme is file, or it has none. One letter before a colon is a
  * drive (C:\). */
 static bool is_file(const char *uri) {
     size_t n = strspn(uri, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
@@ -119,8 +119,8 @@ static int digit64(char c) {
     return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
-/* The bytes behind the comma have %-escapes (RFC 2397), of base64 too. Line breaks within base64
- * are passed over. */
+/* The bytes after the comma may have %-escapes (RFC 2397), in base64 too. Line breaks in base64 are
+ * skipped. */
 static bool decode_data(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
     const char *comma = strchr(uri, ',');
     if (!comma) return masu_gltf_fail(g, "a data: URI without a comma");
@@ -169,7 +169,7 @@ static bool read_buffers(masu_gltf *g) {
         if (uri && !masu_gltf_fetch(g, uri, &g->buffers[i])) return false;
         if (!uri && i == 0) g->buffers[i] = g->chunk;
         if (masu_gltf_failed(g)) return false;
-        if (!g->buffers[i].data) continue; /* where compression puts what it unpacks */
+        if (!g->buffers[i].data) continue; /* a buffer for decompressed data */
         if (g->buffers[i].bytes < bytes) {
             return masu_gltf_fail(g, "\"byteLength\" is %llu, and there are %zu bytes",
                                   (unsigned long long)bytes, g->buffers[i].bytes);
@@ -190,7 +190,7 @@ static bool refuse_first(masu_gltf *g) {
     return masu_gltf_fail(g, "a glTF 1 file, expected glTF 2: convert it");
 }
 
-/* The chunks of a .glb: JSON, then bytes. */
+/* Reads the chunks of a .glb: JSON, then binary data. */
 static bool open_glb(masu_gltf *g, masu_gltf_bytes *text) {
     const unsigned char *data = g->file.data;
     size_t bytes = g->file.bytes;
@@ -259,7 +259,7 @@ static bool check_required(masu_gltf *g) {
     return !masu_gltf_failed(g);
 }
 
-/* Whatever uses an extension that is not read, anywhere in the file. */
+/* Notes all uses of unsupported extensions in the file. */
 static void note_extensions(masu_gltf *g, const json_t *in, const char *name, int depth) {
     const char *key, *own = json_string_value(json_object_get(in, "name"));
     json_t *value;
@@ -285,12 +285,12 @@ static void note_extensions(masu_gltf *g, const json_t *in, const char *name, in
     }
 }
 
-/* ---- the whole ---- */
+/* ---- the file ---- */
 
 static bool check_version(masu_gltf *g) {
     const json_t *asset = masu_gltf_object(g, g->root, "asset");
     const json_t *number = json_object_get(asset, "version");
-    /* glTF 1 has numbers, or none at all; its elements are members of objects. */
+    /* In glTF 1 the version is a number or absent; its elements are members of objects. */
     if (json_is_number(number) ? json_number_value(number) < 2
                                : !number && json_is_object(json_object_get(g->root, "meshes")))
         return refuse_first(g);

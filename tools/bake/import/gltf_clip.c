@@ -1,15 +1,15 @@
-/* gltf_clip.c: animations of a glTF file become aiAnimations, whose keys are linear; see gltf.h.
+/* gltf_clip.c: converts animations of a glTF file to aiAnimations with linear keys; see gltf.h.
  *
  * A step becomes two keys, one float apart in time (as do several keys at one time: assimp_skin.c).
- * A cubic spline is cut into lines that are off by no more than ERROR of the range of its values
- * (of a rotation: of a unit quaternion). */
+ * A cubic spline is divided into lines whose error is at most ERROR of the range of its values (for
+ * a rotation: of a unit quaternion). */
 #include "bake/import/gltf.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #define ERROR 1e-3
-#define CUTS_MAX 7 /* halvings of one piece of a spline */
+#define CUTS_MAX 7 /* bisections of one spline segment */
 
 typedef struct keys {
     masu_bake_buffer all; /* five doubles each: time, value */
@@ -23,7 +23,7 @@ static void add_key(keys *k, double time, const double *value) {
     masu_bake_append(&k->all, key, sizeof key);
 }
 
-/* A piece of a cubic spline: value, outgoing tangent; incoming tangent, value. */
+/* A segment of a cubic spline: value, outgoing tangent; incoming tangent, value. */
 typedef struct piece {
     double from, to, v0[4], b0[4], a1[4], v1[4];
 } piece;
@@ -64,7 +64,7 @@ static void cut(keys *k, const piece *p, double low, double high, int depth) {
     add_key(k, p->from + (p->to - p->from) * high, value);
 }
 
-/* The values of a spline stand between their tangents. */
+/* In a spline, each value is between its two tangents. */
 static void find_error(const float *values, size_t count, unsigned components, keys *k) {
     double range = 0;
     for (unsigned c = 0; c < components; c++) {
@@ -136,7 +136,7 @@ static struct aiNodeAnim *channel_of(masu_gltf *g, const keys *k, int path, cons
     return out;
 }
 
-/* A channel of weights: of each target one of Assimp's, with that target alone. */
+/* A channel of weights: one of Assimp's channels per target, with only that target. */
 static void add_weights(masu_gltf *g, const float *times, uint32_t count, const float *values, uint32_t targets,
                         int how, const struct aiNode *node, struct aiAnimation *out) {
     struct aiMeshMorphAnim **all = masu_gltf_take(g, out->mNumMorphMeshChannels + (size_t)targets, sizeof *all);
@@ -175,7 +175,8 @@ static int find_path(const char *path) {
     return -1;
 }
 
-/* NULL without failure: it moves nothing that can move, or weights, which are in the clip then. */
+/* NULL without failure: it animates nothing that can move, or weights, which are already in the
+ * clip. */
 static struct aiNodeAnim *read_channel(masu_gltf *g, const json_t *clip, const json_t *channel,
                                        struct aiAnimation *clip_made) {
     const json_t *target = masu_gltf_object(g, channel, "target");

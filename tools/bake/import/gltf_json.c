@@ -83,5 +83,5 @@ const json_t *masu_gltf_element(masu_gltf *g, const char *array, json_int_t inde
 }
 
 size_t masu_gltf_count(const masu_gltf *g, const char *array) {
-    return json_array_size(json_object_get(g->root, array)); /* 0: of what is no array */
+    return json_array_size(json_object_get(g->root, array)); /* 0 if it is not an array */
 }

@@ -1,9 +1,9 @@
-/* gltf_mesh.c: primitives of a glTF file become aiMeshes; see gltf.h.
+/* gltf_mesh.c: converts primitives of a glTF file to aiMeshes; see gltf.h.
  *
- * COLOR_0 becomes materials where it can (vertex_color.h), else colours of vertices.
+ * COLOR_0 becomes materials where possible (vertex_color.h), else vertex colours.
  *
- * Morph targets of models that move become aiAnimMeshes; of others the weights are those of the
- * rest pose. Where normals are missing, faces are flat, as glTF wants it. */
+ * Morph targets of animated models become aiAnimMeshes; in other models the weights of the rest
+ * pose are applied. If normals are missing, faces are flat, as glTF requires. */
 #include "bake/import/gltf.h"
 #include "bake/import/vertex_color.h"
 
@@ -14,19 +14,19 @@
 #define VERTICES_MAX ((uint32_t)INT32_MAX / 4)
 #define JOINT_SETS 4
 
-/* The vertices of a primitive, `count` of each; NULL: it has none. */
+/* The vertices of a primitive, `count` of each; NULL: absent. */
 typedef struct vertices {
     uint32_t count;
     float *positions, *normals, *texcoords, *second, *colors; /* colors: 4 each */
-    uint32_t *joints[JOINT_SETS];                    /* 4 each, and weights too */
+    uint32_t *joints[JOINT_SETS];                    /* 4 each, as are weights */
     float *weights[JOINT_SETS];
     uint32_t *indices;
     uint64_t index_count;
-    struct target *targets; /* of a model that moves */
+    struct target *targets; /* of an animated model */
     uint32_t target_count;
 } vertices;
 
-/* What a morph target adds; NULL: nothing. */
+/* The differences of a morph target; NULL: none. */
 typedef struct target {
     float *positions, *normals;
 } target;
@@ -44,8 +44,8 @@ static bool unpacked_id(masu_gltf *g, const source *s, const char *name, json_in
     return !s->packed || masu_gltf_index(g, s->packed, name, 1u << 30, id);
 }
 
-/* One with fewer elements than there are positions is left out. components: least, most. NULL
- * without failure: there is none. */
+/* An attribute with fewer elements than there are positions is dropped. components: least, most.
+ * NULL without failure: absent. */
 static float *attribute(masu_gltf *g, const source *s, const char *name, unsigned least, unsigned most,
                         uint32_t wanted, uint32_t *count, unsigned *components) {
     json_int_t index = -1, id = -1;
@@ -112,7 +112,7 @@ static bool read_joints(masu_gltf *g, const source *s, vertices *v) {
     return true;
 }
 
-/* Their coordinates in the pictures of the material. */
+/* Texture coordinates with the material's transform applied. */
 static bool read_texcoords(masu_gltf *g, const source *s, const masu_gltf_material *material, vertices *v) {
     char name[16];
     uint32_t count;
@@ -134,7 +134,7 @@ static bool read_texcoords(masu_gltf *g, const source *s, const masu_gltf_materi
     return !masu_gltf_failed(g);
 }
 
-/* Whatever is there and is not read. Tangents follow from coordinates and normals. */
+/* Notes the attributes that are ignored. Tangents follow from coordinates and normals. */
 static void note_attributes(masu_gltf *g, const source *s, const masu_gltf_material *material, bool skinned) {
     const char *key;
     json_t *value;
@@ -223,7 +223,7 @@ static bool read_indices(masu_gltf *g, const source *s, vertices *v) {
     return true;
 }
 
-/* Strips (5) and fans (6) to lists. */
+/* Converts strips (5) and fans (6) to lists. */
 static void unroll(masu_gltf *g, unsigned mode, vertices *v) {
     if (mode == 4) return;
     uint64_t triangles = v->index_count < 3 ? 0 : v->index_count - 2;
@@ -247,7 +247,7 @@ static void *spread(masu_gltf *g, const vertices *v, const void *from, size_t by
     return out;
 }
 
-/* The normals of moved faces, less those that they have. */
+/* The normals of the morphed faces minus the base normals. */
 static void flatten_target(masu_gltf *g, const vertices *v, target *to) {
     if (!to->positions) return;
     to->normals = masu_gltf_take(g, v->count, 12);
@@ -262,7 +262,8 @@ static void flatten_target(masu_gltf *g, const vertices *v, target *to) {
     }
 }
 
-/* Each corner a vertex of its own, with the normal of its face. What is out of range stays so. */
+/* Gives each corner a separate vertex with the normal of its face. Indices that are out of range
+ * remain so. */
 static void flatten(masu_gltf *g, vertices *v) {
     vertices out = *v;
     if (v->normals || !v->index_count || v->index_count > VERTICES_MAX) return;
@@ -284,7 +285,8 @@ static void flatten(masu_gltf *g, vertices *v) {
         masu_bake_vec3 a = masu_bake_v3f(p);
         masu_bake_vec3 n = masu_bake_cross(masu_bake_sub(masu_bake_v3f(p + 3), a),
                                            masu_bake_sub(masu_bake_v3f(p + 6), a));
-        if (!masu_bake_normalize(&n)) n = masu_bake_v3(0, 1, 0); /* no area: it is left out */
+        /* a triangle without area is dropped later */
+        if (!masu_bake_normalize(&n)) n = masu_bake_v3(0, 1, 0);
         for (int k = 0; k < 3; k++) masu_bake_store(n, out.normals + 3 * ((size_t)i + (size_t)k));
     }
     if (v->target_count) out.targets = masu_gltf_take(g, v->target_count, sizeof *out.targets);
@@ -326,7 +328,7 @@ static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct a
     mesh->mNumBones = count;
     struct aiBone *bones = masu_gltf_take(g, count, sizeof *bones);
     for (unsigned b = 0; b < count; b++) {
-        /* checked with the nodes */
+        /* check_skins has checked it */
         uint64_t node = (uint64_t)json_integer_value(json_array_get(joints, b));
         struct aiMatrix4x4 *t = &bones[b].mOffsetMatrix;
         bones[b].mName = g->nodes[node].mName;
@@ -347,7 +349,7 @@ static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct a
     }
 }
 
-/* One of `triangles`, whose numbers are in `list` (NULL: all). */
+/* Adds a mesh with the triangles of `list` (NULL: all). */
 static unsigned add_mesh(masu_gltf *g, const vertices *v, const struct aiMesh *like, const uint32_t *list,
                          uint32_t triangles, unsigned material) {
     struct aiMesh *mesh = masu_gltf_take(g, 1, sizeof *mesh);
@@ -363,7 +365,7 @@ static unsigned add_mesh(masu_gltf *g, const vertices *v, const struct aiMesh *l
     return (unsigned)(g->meshes.bytes / sizeof mesh - 1);
 }
 
-/* A mesh for each colour, or one whose vertices have them. */
+/* Adds a mesh for each colour, or one with vertex colours. */
 static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like, json_int_t material,
                       uint32_t triangles, masu_bake_buffer *numbers, const char *name) {
     masu_import_colors colors;
@@ -387,7 +389,7 @@ static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like
     }
 }
 
-/* Assimp has them whole, not as what they add. */
+/* Assimp stores absolute values, not differences. */
 static struct aiVector3D *moved(masu_gltf *g, const float *base, const float *delta, uint32_t count) {
     float *to = masu_gltf_take(g, count, 12);
     if (!base) return NULL;

@@ -1,9 +1,9 @@
-/* gltf_nodes.c: the nodes of a glTF file's scene become aiNodes, with their meshes, instances and
- * lights; see gltf.h.
+/* gltf_nodes.c: converts the nodes of a glTF file's scene to aiNodes, with their meshes, instances
+ * and lights; see gltf.h.
  *
- * Skins, clips and lights find nodes by name in an aiScene, so names are made unique here: the
- * first of a name keeps it, others get their number behind it; who has none is called
- * "nodes[3]". */
+ * Skins, clips and lights of an aiScene refer to nodes by name, so names are made unique here. The
+ * first node with a name keeps it, later ones get their number as a suffix; a node without a name
+ * is called "nodes[3]". */
 #include "bake/import/gltf.h"
 #include "bake/scene/sun.h"
 
@@ -97,7 +97,7 @@ static bool link_children(masu_gltf *g, size_t index, const json_t *node, bool *
     return !masu_gltf_failed(g);
 }
 
-/* The scene's nodes; without a scene all that are below no other. */
+/* The scene's nodes; without a scene, all nodes without a parent. */
 static bool find_roots(masu_gltf *g, const bool *is_child, struct aiNode *root) {
     json_int_t chosen = -1;
     size_t scenes = masu_gltf_count(g, "scenes");
@@ -126,7 +126,7 @@ static bool find_roots(masu_gltf *g, const bool *is_child, struct aiNode *root) 
     return !masu_gltf_failed(g);
 }
 
-/* ---- what hangs on a node ---- */
+/* ---- data of a node ---- */
 
 static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at) {
     const json_t *extension = masu_gltf_extension(g, node, "KHR_lights_punctual");
@@ -205,7 +205,7 @@ static bool add_camera(masu_gltf *g, const json_t *node, const struct aiNode *at
     return true;
 }
 
-/* Many of a node's meshes, each with a transform of its own: children that show them. */
+/* A node with many mesh instances, each with a transform: adds a child for each. */
 static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node) {
     static const char *const names[] = {"TRANSLATION", "ROTATION", "SCALE"};
     const json_t *attributes = masu_gltf_object(g, about, "attributes");
@@ -295,9 +295,9 @@ static bool check_skins(masu_gltf *g) {
     return true;
 }
 
-/* ---- the whole ---- */
+/* ---- all nodes ---- */
 
-/* The last `count` nodes of a stack: the first one of them comes off it first. */
+/* Reverses the last `count` nodes of a stack, so that the first one is popped first. */
 static void reverse(masu_bake_buffer *stack, size_t count) {
     if (count < 2) return;
     struct aiNode **at = (struct aiNode **)(void *)(stack->data + stack->bytes) - count;
@@ -328,9 +328,9 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
     }
     g->where[0] = '\0';
     if (!check_skins(g) || !find_roots(g, is_child, root)) return false;
-    /* Depth first, with a stack of our own. What is shown is a tree: each node is reached once.
-     * Exporters leave nodes outside of the scene whose children are in it; these are not
-     * reached. */
+    /* Depth first, with an explicit stack. The visible nodes are a tree, so each node is reached
+     * once. Some exporters keep nodes outside the scene that have children in the scene; such
+     * parents are not reached. */
     bool *reached = masu_gltf_take(g, g->node_count, 1);
     masu_bake_buffer stack = {0};
     masu_bake_append(&stack, root->mChildren, root->mNumChildren * sizeof(struct aiNode *));

@@ -1,8 +1,7 @@
-/* import.c: a model is read in a child process; see import.h.
+/* import.c: reads a model in a child process; see import.h.
  *
- * What travels through the pipe: for each kind of section, for pictures, cameras, suns, warnings
- * and the error, a uint64 of bytes and the bytes; then END, which proves that the child got that
- * far. */
+ * The pipe carries a uint64 length and the bytes for each kind of section, for images, cameras,
+ * suns, warnings and the error; then END, which proves that the child finished. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/import/import.h"
 #include "bake/base/process.h"
@@ -29,8 +28,8 @@ typedef struct import {
     masu_bake_wanted how;
 } import;
 
-/* A file of a hundred bytes may claim that it holds a billion faces. What an honest one needs grows
- * with its size; forza's 11 MB take 75 MB. */
+/* A file of a hundred bytes may claim to have a billion faces. The memory that a valid file needs
+ * grows with its size; forza's 11 MB need 75 MB. */
 static void limit_memory(const char *path) {
     if (MASU_BAKE_SANITIZED) return;
     struct stat about;
@@ -133,7 +132,7 @@ static bool report_end(const char *path, masu_bake_result result) {
     return false;
 }
 
-/* The library's own words for these are worse. */
+/* The library's own messages for these errors are worse. */
 static bool readable(const char *path) {
     struct stat about;
     int cause = 0;

@@ -51,8 +51,8 @@ static const char *last_part(const char *path) {
     return slash ? slash + 1 : path;
 }
 
-/* Puts "FOLDER/NAME" into `out`, in any_case as it is spelled there, and says whether it is there.
- * folder_bytes: with its '/', or 0. */
+/* Writes "FOLDER/NAME" to `out`, with any_case in the file's actual spelling, and returns whether
+ * it exists. folder_bytes: with its '/', or 0. */
 static bool is_there(const char *folder, size_t folder_bytes, const char *name, bool any_case,
                      masu_bake_buffer *out) {
     out->bytes = 0;
@@ -66,8 +66,7 @@ static bool is_there(const char *folder, size_t folder_bytes, const char *name, 
     return *name && access((const char *)out->data, F_OK) == 0;
 }
 
-/* Cuts the last part off a path of `*bytes` and says whether it is `wanted` (NULL: whatever it
- * is). */
+/* Removes the last part of a path of `*bytes` and returns whether it is `wanted` (NULL: any). */
 static bool step_up(const char *path, size_t *bytes, const char *wanted) {
     size_t end = *bytes, at = end;
     while (at && path[at - 1] != '/') at--;
@@ -76,14 +75,14 @@ static bool step_up(const char *path, size_t *bytes, const char *wanted) {
     return !wanted || (end - at == strlen(wanted) && memcmp(path + at, wanted, end - at) == 0);
 }
 
-/* The same of what the model may name. */
+/* The same, restricted to files that the model may name. */
 static bool is_own(const char *model, size_t folder_bytes, const char *name, bool any_case,
                    masu_bake_buffer *out) {
     return is_there(model, folder_bytes, name, any_case, out) &&
            masu_bake_inside(model, (const char *)out->data);
 }
 
-/* In the shared folder of the TORCS installation that the model is of. */
+/* Searches the shared folder of the TORCS installation that contains the model. */
 static bool is_shared(const char *model, const char *name, masu_bake_buffer *out) {
     if (!masu_bake_is_acc(model)) return false;
     char *path = realpath(model, NULL);
@@ -105,7 +104,7 @@ static bool is_shared(const char *model, const char *name, masu_bake_buffer *out
     return found;
 }
 
-/* The path of a file: URI ("file:///C:/a", "file://host/a", "file:a"), or the name as it is. */
+/* The path of a file: URI ("file:///C:/a", "file://host/a", "file:a"), or the name unchanged. */
 static const char *without_scheme(const char *name) {
     if (strncasecmp(name, "file:", 5) != 0) return name;
     name += 5;
@@ -120,7 +119,7 @@ bool masu_bake_picture_path(const char *model, const char *name, masu_bake_buffe
     masu_bake_append(&resolved, name, strlen(name) + 1);
     char *own = (char *)plain.data, *other = (char *)resolved.data;
     for (char *c = own; *c; c++) {
-        if (*c == '\\') *c = '/'; /* written where that was the separator */
+        if (*c == '\\') *c = '/'; /* from a system with that separator */
     }
     masu_bake_resolve_uri(other, other);
     size_t beside = (size_t)(last_part(model) - model), folder = *own == '/' ? 0 : beside;

@@ -1,8 +1,8 @@
-/* vertex_color.h: colours of vertices become materials where that costs nothing.
+/* vertex_color.h: converts vertex colours to materials if that is free of cost.
  *
- * The triangles of a mesh are grouped by colour; each group gets a material of its colour, if
- * these are up to 64 colours that do not change within a triangle. Other meshes keep the colours
- * of their vertices. */
+ * The triangles of a mesh are grouped by colour, and each group gets a material of its colour. The
+ * condition: at most 64 colours, each constant within a triangle. Other meshes keep their vertex
+ * colours. */
 #ifndef MASU_BAKE_VERTEX_COLOR_H
 #define MASU_BAKE_VERTEX_COLOR_H
 
@@ -27,7 +27,7 @@ typedef struct masu_import_colors {
     uint32_t clamped;    /* triangles with a colour beyond 0 to 1 */
 } masu_import_colors;
 
-/* colors: linear, 4 for each vertex. opaque: alpha counts for nothing. What is returned is of the
+/* colors: linear, 4 for each vertex. opaque: alpha is ignored. The result is allocated in the
  * pool. */
 void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_t vertices,
                               const uint32_t *indices, uint32_t triangles, bool opaque,
