@@ -1,6 +1,6 @@
-/* check.c: what another process has handed over, checked before any of its indices is
- * followed. The rules are those of blob.h for geometry, instances and materials; the finished scene
- * is judged by the runtime's own reader, masu_scene_bind. */
+/* check.c: checks data from another process before any of its indices is used. The rules are those
+ * of blob.h for geometry, instances and materials; the runtime's own reader, masu_scene_bind,
+ * checks the finished scene. */
 #include "bake/scene/check.h"
 #include "bake/scene/camera.h"
 #include "bake/scene/sun.h"
@@ -25,7 +25,7 @@ static bool name_ok(const masu_bake_content *c, uint32_t name) {
     return name == MASU_BLOB_NONE || name < c->section[MASU_BLOB_NAMES].bytes;
 }
 
-/* [first, first + count) lies in [0, total), and is not empty. */
+/* True if [first, first + count) is within [0, total) and not empty. */
 static bool range_ok(uint32_t first, uint32_t count, uint64_t total) {
     return count > 0 && (uint64_t)first + count <= total;
 }
@@ -111,7 +111,7 @@ static const char *check_instances(const masu_bake_content *c) {
     return NULL;
 }
 
-/* Pictures and maps. They are no part of the blob, so nobody else looks at them. */
+/* Images and maps. They are not part of the blob, so no other code checks them. */
 static const char *check_maps(const masu_bake_content *c) {
     uint64_t materials = masu_bake_count(c, MASU_BLOB_MATERIALS);
     size_t images = c->images.bytes / sizeof(masu_bake_image);
@@ -191,7 +191,7 @@ static const char *check_lights(const masu_bake_content *c) {
     return NULL;
 }
 
-/* ---- Models that move: nodes, clips, skins ---- */
+/* ---- Animated models: nodes, clips, skins ---- */
 
 static const char *check_nodes(const masu_bake_content *c) {
     const masu_blob_model_node *nodes =
@@ -232,7 +232,7 @@ static const char *check_clips(const masu_bake_content *c) {
     return next == masu_bake_count(c, MASU_BLOB_CHANNELS) ? NULL : "channels of no clip";
 }
 
-/* Its node shows a mesh whose vertices are those of the skin, and no other's. */
+/* The skin's node shows a mesh that uses all of the skin's vertices and no others. */
 static const char *check_skin(const masu_bake_content *c, const masu_blob_skin *s) {
     const masu_blob_model_node *nodes =
         MASU_BAKE_ARRAY(c, MASU_BLOB_MODEL_NODES, const masu_blob_model_node);

@@ -1,10 +1,10 @@
 /* groups.c: see groups.h.
  *
- * Every group, the scene's own and the root, has things: instances and groups named by the
- * scene. Up to MASU_CULL_LEAF of them are members of the group itself; of more, a binary tree is
- * made, which splits the things along the longest side of the box of their middles where the
- * surface area heuristic is least, though not further out than a quarter. Groups and items end
- * up in the order of a breadth-first walk, as src/scene/check_groups.c asks for. */
+ * Every group, the scene's and the root, has things: instances and groups named by the scene. Up to
+ * MASU_CULL_LEAF things are direct members of the group; more are put into a binary tree. It splits
+ * the things along the longest side of the bounds of their centres, at the least surface area
+ * heuristic, but not further out than a quarter. Groups and items are stored in breadth-first
+ * order, as src/scene/check_groups.c requires. */
 #include "bake/scene/groups.h"
 #include "scene/cull.h"
 
@@ -12,8 +12,8 @@
 #include <string.h>
 
 typedef struct thing {
-    masu_cull_box box; /* widened, or a group's */
-    double key;        /* of the split at hand */
+    masu_cull_box box; /* expanded, or a group's */
+    double key;        /* for the current split */
     uint32_t instance; /* MASU_BLOB_NONE: a group */
     uint32_t group;    /* of the scene */
 } thing;
@@ -76,7 +76,7 @@ static masu_cull_box instance_box(const masu_bake_content *content, size_t i) {
 }
 
 /* Sorts instances and groups to the ranges of their owners; index `count` is the root's. Groups
- * without any instance are left out. Boxes of groups come last, inner ones first. */
+ * without any instance are dropped. Boxes of groups are computed last, inner ones first. */
 static void gather(builder *b, uint32_t count, size_t instances) {
     const masu_blob_group *groups = groups_of(b->content);
     masu_blob_instance *all = MASU_BAKE_INSTANCES(b->content);
@@ -138,7 +138,7 @@ static double area(const masu_cull_box *b) {
     return x * y + y * z + z * x;
 }
 
-/* How many things go to the first half. */
+/* The number of things in the first half. */
 static size_t split(thing *things, size_t n, uint32_t level) {
     masu_cull_box around = masu_cull_around(&things[0].box, 1);
     double low[3], high[3];
@@ -156,7 +156,7 @@ static size_t split(thing *things, size_t n, uint32_t level) {
     for (size_t i = 0; i < n; i++) things[i].key = (double)things[i].box.center[axis];
     qsort(things, n, sizeof *things, by_key);
     if (level >= MASU_CULL_DEPTH / 2) return n / 2;      /* halves keep the tree shallow */
-    double *cost = masu_bake_allocate(n * sizeof *cost); /* of a split behind each thing */
+    double *cost = masu_bake_allocate(n * sizeof *cost); /* of a split after each thing */
     masu_cull_box grown[2] = {things[0].box, things[0].box};
     for (size_t i = 0; i < n; i++) {
         grown[1] = things[i].box;

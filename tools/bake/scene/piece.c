@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- what a scene changes of materials ---- */
+/* ---- a scene's changes to materials ---- */
 
 static bool same_override(const masu_bake_override *a, const masu_bake_override *b) {
     const masu_blob_material *x = &a->value, *y = &b->value;
@@ -58,8 +58,8 @@ bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_
     return false;
 }
 
-/* What a scene gives a material takes the place of the model's lobes: blob.h allows one, and
- * none with a coat. */
+/* A lobe that the scene specifies replaces the model's lobes: blob.h allows one, and none with a
+ * coat. */
 static void drop_lobes(const masu_bake_override *o, masu_blob_material *to, masu_bake_maps *maps) {
     if (!o->specular && !(to->coat > 0) && to->meso == MASU_BLOB_NONE) return;
     for (int k = 0; k < 3; k++) to->specular_color[k] = to->sheen_color[k] = 0;
@@ -68,8 +68,8 @@ static void drop_lobes(const masu_bake_override *o, masu_blob_material *to, masu
     maps->image[MASU_BAKE_LOBE_COLOR] = maps->image[MASU_BAKE_LOBE_STRENGTH] = MASU_BLOB_NONE;
 }
 
-/* The index of refraction also is the reflectance, unless `specular` is given or fixed by a
- * sheen. */
+/* The index of refraction also sets the reflectance, unless `specular` is given or a sheen fixes
+ * it. */
 static void set_ior(masu_blob_material *to, float ior, bool own_specular) {
     float root = (ior - 1) / (ior + 1);
     to->ior = ior;
@@ -81,7 +81,7 @@ static void set_ior(masu_blob_material *to, float ior, bool own_specular) {
  * light. */
 static void make_unlit(masu_blob_material *to, masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
     const float *base = to->base_color;
-    /* it is one */
+    /* already unlit */
     if (maps->unlit && base[0] == 0.0f && base[1] == 0.0f && base[2] == 0.0f) return;
     memcpy(to->emissive, to->base_color, sizeof to->emissive);
     maps->image[MASU_BAKE_EMISSIVE] = maps->image[MASU_BAKE_BASE];
@@ -130,7 +130,7 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     }
     if (o->map[MASU_BAKE_ROUGHNESS]) maps->gloss = 0;
     if (o->map[MASU_BAKE_OCCLUSION]) maps->occlusion = 1;
-    if (o->map[MASU_BAKE_NORMAL] && maps->relief) { /* the strength was of another picture */
+    if (o->map[MASU_BAKE_NORMAL] && maps->relief) { /* the strength belonged to another image */
         maps->relief = 0;
         maps->normal_scale = 1;
     }
@@ -151,14 +151,13 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     drop_lobes(o, to, maps);
 }
 
-/* Where colour and emission repeat with the detail, it is the texture coordinates that are
- * scaled: rays and lights then see the same, and nothing is scaled when drawn. What they are
- * scaled by, 1 for nothing. */
+/* If colour and emission repeat with the detail, the texture coordinates are scaled instead: rays
+ * and lights then use the same, and drawing needs no scale. Returns the scale, 1 for none. */
 static void scale_all(masu_blob_material *to, masu_bake_maps *maps, float scale[2]) {
     for (int k = 0; k < 2; k++) {
         scale[k] = to->detail[k];
         to->detail[k] = 1;
-        /* clamped: would be shown once */
+        /* clamped: would appear only once */
         if (scale[k] > 1 && maps->wrap[k] == 1) maps->wrap[k] = 0;
     }
 }
@@ -184,7 +183,7 @@ static uint32_t placed_material(masu_bake_content *scene, const masu_bake_conten
     masu_blob_material material = MASU_BAKE_MATERIALS(piece)[index];
     const char *name = masu_bake_name_text(piece, material.name);
     masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
-    bool own[MASU_BAKE_MAPS] = {false}; /* the scene's picture, not the piece's */
+    bool own[MASU_BAKE_MAPS] = {false}; /* the image is the scene's, not the piece's */
     for (size_t i = 0; i < overrides->count; i++) {
         if (!matches(piece, index, &overrides->items[i])) continue;
         apply_override(&overrides->items[i], &material, &maps, own);
@@ -219,8 +218,8 @@ static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *p
     return offset;
 }
 
-/* The coordinates of a primitive that has been copied. `by`: of each vertex of the piece, the
- * material that has scaled it, from 1. Returns NULL or what is wrong. */
+/* Scales the coordinates of a copied primitive. `by`: for each vertex of the piece, the material
+ * that has scaled it, from 1. Returns NULL or the error. */
 static const char *scale_coordinates(masu_bake_content *scene, const masu_blob_primitive *p, uint32_t first_vertex,
                                      uint32_t material, const float scale[2], uint32_t *by) {
     static const uint32_t kinds[2] = {MASU_BLOB_TEXCOORDS, MASU_BLOB_TEXCOORDS_1};
@@ -241,7 +240,7 @@ static const char *scale_coordinates(masu_bake_content *scene, const masu_blob_p
     return NULL;
 }
 
-/* Primitives and meshes of the piece, with its materials as overridden. */
+/* Copies primitives and meshes of the piece, with its materials as overridden. */
 static const char *place_meshes(masu_bake_content *scene, const masu_bake_content *piece,
                                 uint32_t first_vertex, uint32_t first_index,
                                 const masu_bake_overrides *overrides, bool scaled) {
@@ -276,7 +275,7 @@ static const char *place_meshes(masu_bake_content *scene, const masu_bake_conten
     return problem;
 }
 
-/* The largest counts that the runtime takes, after adding the piece. */
+/* Checks the runtime's largest counts for the scene plus the piece. */
 static const char *room_for(const masu_bake_content *scene, const masu_bake_content *piece) {
     static const struct {
         uint32_t kind;
@@ -318,7 +317,8 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
     }
     uint32_t first_mesh = residence->first_mesh;
     if (!residence->has_meshes) {
-        /* Two primitives share no indices (src/scene/scene.c): other materials, other indices. */
+        /* Two primitives cannot share indices (src/scene/scene.c): other materials need other
+         * indices. */
         uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
         first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
         problem = place_meshes(scene, piece, residence->first_vertex, first_index, overrides, scaled);
@@ -349,8 +349,9 @@ double masu_bake_light_range(masu_bake_vec3 color) {
     return fmin(fmax(10.0 * sqrt(fmax(most, 0.0)), 1e-3), 1e9);
 }
 
-/* By the radiant intensity / pi of an area light along its normal, or of a capsule from aside;
- * six times that of a point, for highlights are seen from farther. At least 8 times its size. */
+/* From the radiant intensity / pi of an area light along its normal, or of a capsule from the side.
+ * Six times the range of a point light, because highlights are visible from farther away. At least
+ * 8 times its size. */
 double masu_bake_area_range(const masu_blob_light *light) {
     uint32_t type = light->type & MASU_LIGHT_TYPE;
     double r = (double)light->radius, area = 0, size = 0;
@@ -370,7 +371,7 @@ double masu_bake_area_range(const masu_blob_light *light) {
     return fmax(6 * masu_bake_light_range(masu_bake_mad(zero, color, area / MASU_BAKE_PI)), 8 * size);
 }
 
-/* A light in another space. False: it has left what can be said. */
+/* Transforms a light to another space. False: its values are out of range. */
 static bool move(masu_blob_light *light, const masu_bake_affine *to) {
     masu_bake_vec3 origin = {0, 0, 0}, zero = masu_bake_apply(to, origin);
     masu_bake_vec3 position = masu_bake_apply(to, masu_bake_v3f(light->position));

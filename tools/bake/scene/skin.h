@@ -1,25 +1,25 @@
-/* skin.h: clips and skins of models that move (CLIPS to SKIN_VERTICES of the blob), as they come
- * from a piece into a scene. The content owns all of it; nothing here can fail. */
+/* skin.h: copies clips and skins of animated models (CLIPS to SKIN_VERTICES of the blob) from a
+ * piece to a scene. The content owns all data; no function here can fail. */
 #ifndef MASU_BAKE_SKIN_H
 #define MASU_BAKE_SKIN_H
 
 #include "bake/scene/content.h"
 
-/* For a model that has just been added, whose nodes are those of the piece: its skins, each with
- * vertices of its own. A mesh that another model has taken before is copied. Joints are those of
- * the model that it is like. */
+/* Adds the skins of a model that has just been added, with the nodes of the piece. Each skin has
+ * separate vertices; a mesh that another model already uses is copied. The joints are those of the
+ * first model of its kind. */
 void masu_bake_add_skins(masu_bake_content *content, const masu_bake_content *piece,
                          uint32_t model);
 
-/* And its clips, for it and all that will be like it. */
+/* Adds the clips, for this model and later ones of its kind. */
 void masu_bake_add_clips(masu_bake_content *content, const masu_bake_content *piece,
                          uint32_t model);
 
-/* Whether joints bend a mesh of the scene. */
+/* True if a mesh of the scene is skinned. */
 bool masu_bake_is_skinned(const masu_bake_content *content, uint32_t mesh);
 
-/* Moves the vertices of skins to the end, in their order. Before anything is kept by a vertex's
- * number. */
+/* Moves the vertices of skins to the end, in their order. Call it before any vertex index is
+ * stored. */
 void masu_bake_gather_skins(masu_bake_content *content);
 
 #endif
