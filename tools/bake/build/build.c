@@ -1,8 +1,10 @@
-/* build.c: the steps of building; see build.h. The order matters: occluders are of meshes as
- * they are and then looked for in their LODs; the box of all instances frames the camera; the
- * SDF's shader depends on whether there are polygons; textures say which materials are masked or
- * blended, before occluders are dropped and trees are grown; instances are sorted before
- * anything is kept by their number. */
+/* build.c: the steps of building; see build.h. The order matters:
+ *   - occluders use the full meshes and are then matched with their LODs;
+ *   - the bounds of all instances frame the camera;
+ *   - the SDF's shader depends on whether there are polygons;
+ *   - textures decide which materials are masked or blended, before occluders are dropped
+ *     and BVHs built;
+ *   - instances are sorted before their indices are stored. */
 #include "bake/build/build.h"
 #include "bake/build/first_look.h"
 #include "bake/build/look.h"
@@ -25,8 +27,8 @@
 
 #define REPORT_POINTS 1024u
 #define REPORT_RAYS 4096u
-/* More triangles than these are not traced unless the scene asks for it: the tree of more takes
- * seconds to bake, and an integrated GPU has hardly the time to walk it. */
+/* By default, larger scenes are not traced: their BVH takes seconds to bake, and an integrated GPU
+ * is hardly fast enough to traverse it. */
 #define TRACED_TRIANGLES_MAX 500000u
 #define LARGE 1000 /* metres: longer models may have other units */
 
@@ -38,7 +40,7 @@ static void make_detail(const masu_bake_description *d, masu_bake_content *conte
     masu_bake_prove_occluders(content);
 }
 
-/* All of the SDF but its shader. */
+/* Adds all of the SDF except its shader. */
 static void add_sdf(const masu_bake_sdf *sdf, masu_bake_content *content) {
     for (size_t i = 0; i < sdf->param_count; i++) {
         const masu_bake_sdf_param *p = &sdf->params[i];
@@ -64,7 +66,7 @@ static bool load_panorama(const masu_bake_environment *e, masu_bake_panorama *ou
     return true;
 }
 
-/* The key of a model's camera. */
+/* Uses a model's camera as the camera key. */
 static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, const masu_bake_content *content,
                         masu_blob_camera_key *key) {
     const masu_bake_camera *camera = masu_bake_find_camera(content, d->look.camera);
@@ -82,14 +84,14 @@ static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, c
         return false;
     }
     masu_bake_vec3 at = masu_bake_v3f(camera->position);
-    /* A float of a large coordinate still has to tell the two points apart. */
+    /* The distance must be resolvable in floats at large coordinates. */
     double ahead = fmax(1, masu_bake_length(at) * 1e-3);
     *key = (masu_blob_camera_key){.fov_y = d->look.own_fov_y ? (float)(d->look.fov_y * (MASU_BAKE_PI / 180))
                                                              : camera->fov_y};
     masu_bake_vec3 forward = masu_bake_v3f(camera->direction);
     if (camera->height > 0 && !(d->look.height > 0)) d->look.height = (double)camera->height;
     if (d->look.own_fov_y) d->look.height = 0;
-    /* exact in the middle of the scene */
+    /* exact at the centre of the scene */
     if (d->look.height > 0 && !masu_bake_box_is_empty(bounds)) {
         masu_bake_vec3 middle = masu_bake_mad(bounds->low, masu_bake_sub(bounds->high, bounds->low), 0.5);
         ahead = fmax(ahead, masu_bake_dot(masu_bake_sub(middle, at), forward));
@@ -99,7 +101,7 @@ static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, c
     return true;
 }
 
-/* The first directional light of the models, where the scene has no sun of its own. */
+/* Uses the models' first directional light if the scene specifies no sun. */
 static void take_sun(masu_bake_description *d, const masu_bake_content *content) {
     masu_bake_look *look = &d->look;
     for (uint32_t i = 0; i < masu_bake_sun_count(content); i++) {
@@ -116,9 +118,9 @@ static void take_sun(masu_bake_description *d, const masu_bake_content *content)
     }
 }
 
-/* The sun of the environment map becomes that of the scene. One that the description has replaces
- * it; where that is black, or the sun is a light of a model, the map keeps its sun and is the only
- * source of its light. */
+/* The sun of the environment map becomes the scene's sun. A sun of the description replaces it. If
+ * that sun is black, or is a model's light, the map keeps its sun and is the only source of its
+ * light. */
 static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama *p,
                               masu_bake_look *look) {
     const masu_bake_vec3 *own = &look->sun_color;
@@ -138,7 +140,8 @@ static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama
     look->sun_color = masu_bake_v3(sun.color[0], sun.color[1], sun.color[2]);
 }
 
-/* A model alone is in metres unless its file says otherwise, and few things are kilometres wide. */
+/* Units of a model without a scene are metres unless its file specifies others; few objects are
+ * kilometres wide. */
 static void hint_at_units(const masu_bake_description *d, const masu_bake_box *bounds) {
     if (masu_bake_box_is_empty(bounds) || !d->model_count || !d->models[0].plays || masu_cli_quiet()) return;
     masu_bake_vec3 e = masu_bake_sub(bounds->high, bounds->low);
@@ -149,7 +152,7 @@ static void hint_at_units(const masu_bake_description *d, const masu_bake_box *b
            d->models[0].file, longest);
 }
 
-/* Models, SDF, camera and light. Completes the description by the members that depend on the
+/* Adds models, SDF, camera and light. Completes the members of the description that depend on the
  * models. */
 static bool build_scene(masu_bake_description *d, const masu_bake_options *options,
                         masu_bake_content *content, masu_bake_report *report) {
@@ -164,7 +167,7 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     if (!masu_bake_build_lights(d, content)) return false;
     if (d->sdf.source) {
         add_sdf(&d->sdf, content);
-        /* Models say better than an endless world's bounds what the camera should look at. */
+        /* The models' bounds frame the camera better than those of an endless world. */
         if (masu_bake_box_is_empty(&bounds)) bounds = d->sdf.framed;
     }
     if (d->first_look && !masu_bake_box_is_empty(&bounds)) {
@@ -221,7 +224,7 @@ bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report) {
     if (!build_scene(d, options, content, report)) return false;
     if (options->describe) return true;
-    /* rays of probes, and of nothing that mirrors */
+    /* rays are for probes only, not for reflections */
     if (d->probes.live && !d->reflections.wanted) {
         d->reflections.wanted = true;
         d->reflections.cutoff = 0;

@@ -1,26 +1,26 @@
-/* first_look.c: a model without a scene, as a photographer would put it: three-quarter view, the
- * model nearly as large as the frame, a lamp of the sky from the side, a dark enough background
- * that white things stand out, a ground that takes shadow and a soft reflection; see first_look.h.
+/* first_look.c: a default presentation for a model without a scene: three-quarter view, the model
+ * nearly fills the frame, a sky light from the side, a background dark enough for white objects, a
+ * ground that receives shadow and a soft reflection; see first_look.h.
  *
- * The camera's direction is given; where it stands is then exact. In axes of the camera a point
- * (x, y, z), z into the picture, is within the frame if |x - cx| <= a (z - cz) and |y - cy| <= b
- * (z - cz), for the half angles' tangents a and b. The four bounds are planes, the point that
- * meets most of each is found in one pass over the vertices, and the nearest cz that satisfies
- * all follows. */
+ * The camera's direction is given; its position then has an exact solution. In camera axes, a point
+ * (x, y, z) with z into the image is in the frame if |x - cx| <= a (z - cz) and |y - cy| <= b (z -
+ * cz), where a and b are the tangents of the half angles. The four bounds are planes. One pass over
+ * the vertices finds the extreme point for each plane, which gives the closest cz that satisfies
+ * all. */
 #include "bake/build/first_look.h"
 #include "bake/mesh/shape.h"
 
 #include <string.h>
 
-/* of the height or width of the picture, whichever the model meets first */
+/* of the frame's height or width, whichever the model reaches first */
 #define FRAME_SHARE 0.89
-#define MOVING_SHARE 0.75 /* of a model that plays clips, which is framed at rest */
-/* of the picture that it is made for: in narrower ones a wide model is cut off */
+#define MOVING_SHARE 0.75 /* for a model that plays clips, which is framed in its rest pose */
+/* of the intended frame: narrower ones crop a wide model */
 #define ASPECT (16.0 / 9)
-/* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
+/* height / the shorter side; below it, a model is a landscape: no ground, higher camera */
 #define FLAT 0.12
-#define STEEP 0.85        /* height / depth of the camera's direction for these */
-#define LOW 0.5           /* height / the longer side of what is looked down on */
+#define STEEP 0.85        /* height / depth of the camera's direction for landscapes */
+#define LOW 0.5           /* height / the longer side, for models that are viewed from above */
 #define LOOK_DOWN 0.3     /* of its height: the camera's height above the top */
 #define GROUND_RADII 60 /* half a side of the ground, in radii of the model: it ends in the haze */
 
@@ -38,9 +38,9 @@ static axes axes_of(masu_bake_vec3 towards_camera) {
     return a;
 }
 
-/* How far vertices reach across the four planes that bound the frame. */
+/* Maximum extent of the vertices across the four planes that bound the frame. */
 typedef struct reach {
-    double right, left, above, below; /* most of x - a z, -x - a z, y - b z, -y - b z */
+    double right, left, above, below; /* maximum of x - a z, -x - a z, y - b z, -y - b z */
 } reach;
 
 static void reach_of(const masu_bake_content *c, const axes *at, double a, double b, reach *r) {
@@ -74,7 +74,8 @@ static bool is_flat(const masu_bake_box *box) {
     return e.y < FLAT * fmin(e.x, e.z);
 }
 
-/* Not nearer than the model is deep: a stick that points at the camera would else touch it. */
+/* The distance is at least the model's depth: otherwise a stick that points at the camera would
+ * touch it. */
 static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_box *box, double fov_y,
                                   masu_bake_vec3 towards) {
     const masu_bake_vec3 zero = {0, 0, 0};
@@ -96,8 +97,8 @@ static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_bo
     return key;
 }
 
-/* The near end of a long, low model, such as a table, fills the frame: the camera rises until it
- * sees the top. */
+/* For a long, low model, such as a table, the front fills the frame: the camera rises until the top
+ * is visible. */
 static masu_blob_camera_key frame_from_above(const masu_bake_content *c, const masu_bake_box *box,
                                              double fov_y, bool flat) {
     masu_bake_vec3 e = extent_of(box);
@@ -111,7 +112,8 @@ static masu_blob_camera_key frame_from_above(const masu_bake_content *c, const m
     return key;
 }
 
-/* Just under the model: what lies on it, as soles and tyres do, must not flicker through. */
+/* Slightly below the model: faces at the bottom, such as soles and tyres, must not z-fight with
+ * it. */
 static void add_ground(const masu_bake_box *box, masu_bake_description *d) {
     masu_bake_vec3 e = extent_of(box);
     double radius = fmax(masu_bake_length(e) / 2, 1e-3), side = 2 * GROUND_RADII * radius;
@@ -147,7 +149,7 @@ static void set_light(const masu_bake_box *box, bool flat, masu_bake_look *l) {
     const float *p = l->keys[0].position;
     masu_bake_vec3 e = extent_of(box), center = masu_bake_mad(box->low, e, 0.5);
     double radius = fmax(masu_bake_length(e) / 2, 1e-3);
-    /* From the left of the camera and above it: form is seen by its shade. */
+    /* From the left of the camera and above it: shading shows the shape. */
     l->sun_direction = masu_bake_v3(-0.55, 1.0, 0.95);
     masu_bake_normalize(&l->sun_direction);
     l->sun_color = masu_bake_v3(1, 0.95, 0.87);
@@ -163,7 +165,7 @@ static void set_light(const masu_bake_box *box, bool flat, masu_bake_look *l) {
     l->occlusion_radius = radius * 0.2;
     l->smooth_edges = true;
     if (flat) return;
-    /* The ground's far side becomes the horizon. */
+    /* The far side of the ground becomes the horizon. */
     l->fog_color = l->horizon;
     l->fog_density = 3.9 / (GROUND_RADII * 0.8 * radius);
     l->fog_start = l->shadow_distance;
@@ -178,6 +180,6 @@ void masu_bake_make_first_look(const masu_bake_box *bounds, const masu_bake_cont
     d->look.key_count = 1;
     d->look.keys[0] = frame_from_above(content, bounds, d->look.fov_y, flat);
     set_light(bounds, flat, &d->look);
-    d->reflections.smallest = radius * 2 * MASU_BAKE_TRACED_SHARE; /* the ground is not to count */
+    d->reflections.smallest = radius * 2 * MASU_BAKE_TRACED_SHARE; /* excludes the ground */
     if (!flat) add_ground(bounds, d);
 }

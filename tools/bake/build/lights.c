@@ -1,5 +1,5 @@
-/* lights.c: the scene's own punctual lights, behind those that its models have brought along; see
- * build.h. Can fail: an instance of that name is not there, or there are too many in all. */
+/* lights.c: the scene's own punctual lights, after those of its models; see build.h. Fails if an
+ * instance of that name is missing, or if there are too many lights in total. */
 #include "bake/build/parts.h"
 
 #include <stdio.h>

@@ -1,9 +1,8 @@
-/* look.c: camera path, shadow map and environment of the blob: what the scene says of them, and by
- * the box of what it shows what it leaves open; see build.h. */
+/* look.c: camera path, shadow map and environment of the blob, as the scene specifies; defaults
+ * depend on the bounds of the visible objects; see build.h. */
 #include "bake/build/look.h"
 
-/* Depth is n / z in a float: its relative precision is that of the float wherever the near plane
- * is. */
+/* Depth is n / z in a float: its relative precision is the float's for any near plane. */
 #define NEAR 0.01
 
 static double box_radius(const masu_bake_box *box) {
@@ -12,11 +11,11 @@ static double box_radius(const masu_bake_box *box) {
     double most = fmax(fabs(box->low.x), fabs(box->high.x));
     most = fmax(most, fmax(fabs(box->low.y), fabs(box->high.y)));
     most = fmax(most, fmax(fabs(box->low.z), fabs(box->high.z)));
-    /* A scene of one point far away still needs a distance that its floats can express. */
+    /* A scene of one distant point also needs a distance that its floats can represent. */
     return fmax(masu_bake_length(extent) / 2, fmax(most * 1e-5, 1e-3));
 }
 
-/* The sphere around the box fills the height of the picture. */
+/* The bounding sphere fills the height of the frame. */
 static masu_blob_camera_key framing_key(const masu_bake_box *box, double fov_y) {
     masu_bake_vec3 center = {0, 0, 0}, direction = {0.62, 0.42, 1.0};
     if (!masu_bake_box_is_empty(box)) {
@@ -30,11 +29,11 @@ static masu_blob_camera_key framing_key(const masu_bake_box *box, double fov_y) 
     return key;
 }
 
-/* An orthographic camera is a narrow lens far behind the image plane, where the near plane then
- * is: the size is exact at the target, and off by 0.035 % at half an image's height in front of
- * it or behind, 0.34 pixels at the edge of 1920 x 1080. What floats lose with the distance is
- * 0.1 pixels, and would be more with a narrower one. Returns how far back the camera has moved
- * at least. */
+/* An orthographic camera is approximated by a narrow lens far behind the image plane, which becomes
+ * the near plane. The size is exact at the target. At half an image height in front or behind, the
+ * error is 0.035 %, 0.34 pixels at the edge of 1920 x 1080. The rounding of floats at that distance
+ * costs 0.1 pixels, and more with a narrower lens. Returns the least distance by which the camera
+ * has moved back. */
 #define LENS 0.0007 /* radians */
 
 static double flatten(double height, masu_blob_camera_key *keys, size_t count) {
@@ -51,8 +50,8 @@ static double flatten(double height, masu_blob_camera_key *keys, size_t count) {
     return least;
 }
 
-/* Keys between those of a path that turns: positions that far away are interpolated along a
- * chord. At TURN radians it comes 0.04 of the picture's height nearer than the arc. */
+/* Adds keys between those of a rotating path: at such distances positions are interpolated along a
+ * chord. At TURN radians the chord is 0.04 of the frame's height closer than the arc. */
 #define TURN 0.015
 #define HALVINGS 12
 
@@ -100,7 +99,7 @@ static double add_camera(const masu_bake_look *l, const masu_bake_box *bounds,
                          : 0;
 }
 
-/* The sun's shadow map is of polygons: without any it is left out. */
+/* The sun's shadow map contains only polygons: it is omitted if there are none. */
 static void add_shadow(const masu_bake_look *l, const masu_bake_box *bounds, double back,
                        masu_bake_content *content) {
     double distance =
@@ -135,7 +134,7 @@ static void add_environment(const masu_bake_look *l, const masu_bake_box *bounds
         e.sun_color);
     double reach =
         l->occlusion_radius > 0 ? l->occlusion_radius : fmin(box_radius(bounds) * 0.2, 1);
-    /* Rounded as the check of the blob does. */
+    /* Rounded as in the check of the blob. */
     if (l->occlusion) e.occlusion_radius = fmaxf((float)reach, 1e-3f);
     masu_bake_store(l->ambient, e.ambient);
     masu_bake_store(l->zenith, e.sky_zenith);

@@ -1,6 +1,6 @@
-/* models.c: the models of a description are imported or made, and placed; see build.h. A file is
- * imported once however often it is placed. Can fail: a model cannot be read, has no extent to fit,
- * leaves the coordinates that a scene may have, or is no box where it is said to be one. */
+/* models.c: imports or makes the models of a description, and places them; see build.h. A file is
+ * imported once for all placements. Fails if a model cannot be read, has no extent to fit, exceeds
+ * the coordinate limit, or is not a box although the scene declares one. */
 #include "bake/base/file.h"
 #include "bake/build/parts.h"
 #include "bake/light/emitters.h"
@@ -18,28 +18,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- what has been imported or made ---- */
+/* ---- imported and procedural models ---- */
 
-/* What a piece looks like in the scene with one set of overridden values: placed again with the
- * same values, it is the same meshes. */
+/* A piece in the scene with one set of overridden values: another placement with the same values
+ * uses the same meshes. */
 typedef struct variant {
     struct variant *next;
     masu_bake_overrides overrides;
     masu_bake_residence residence;
 } variant;
 
-/* Imported files, by path and by how they are merged, and meshes by formula. */
+/* Imported files, by path and merge size, and procedural meshes. */
 typedef struct loaded_model {
     struct loaded_model *next;
-    const char *path;            /* NULL: by formula */
-    uint32_t shape;              /* of the description's */
-    double merge;                /* metres, 0: as the file has it */
+    const char *path;            /* NULL: procedural */
+    uint32_t shape;              /* index into the description's shapes */
+    double merge;                /* metres, 0: as in the file */
     bool moving;                 /* with its clips and skins */
     bool plays;                  /* the same if it has clips */
     const char *variant;         /* of its materials, or NULL */
     masu_bake_textures textures; /* as imported; of a shape FORCED: it has coordinates */
     masu_bake_content piece;
-    masu_bake_residence residence; /* of the vertices: the first variant's */
+    masu_bake_residence residence; /* for the vertices: the first variant's */
     variant *variants;
 } loaded_model;
 
@@ -48,7 +48,7 @@ typedef struct model_builder {
     masu_bake_content *content; /* the scene */
     masu_bake_textures textures;
     loaded_model *loaded;
-    masu_bake_pool pool; /* what is loaded, variants, overrides */
+    masu_bake_pool pool; /* for loaded models, variants, overrides */
 } model_builder;
 
 static loaded_model *find_loaded(const model_builder *b, const loaded_model *wanted) {
@@ -67,7 +67,7 @@ static void release_loaded(model_builder *b) {
     masu_bake_pool_release(&b->pool);
 }
 
-/* Fills the piece of a new one. */
+/* Fills the piece of a new loaded model. */
 static bool make_piece(const model_builder *b, const masu_bake_model *model, loaded_model *made) {
     if (!made->path) {
         bool mapped = made->textures == MASU_BAKE_TEXTURES_FORCED;
@@ -81,7 +81,7 @@ static bool make_piece(const model_builder *b, const masu_bake_model *model, loa
     return !problem || masu_bake_wrong(b->description, model->where, "gives %s", problem);
 }
 
-/* Whether the scene gives it pictures: then it needs texture coordinates. */
+/* True if the scene gives it textures: it then needs texture coordinates. */
 static bool is_mapped(const masu_bake_model *model) {
     for (size_t i = 0; i < model->change_count; i++) {
         for (int map = 0; map < MASU_BAKE_MAPS; map++) {
@@ -95,7 +95,7 @@ static loaded_model *fetch(model_builder *b, const masu_bake_model *model) {
     loaded_model wanted = {.path = model->file,
                            .shape = model->shape,
                            .merge = model->merge,
-                           /* What is merged has lost its nodes. */
+                           /* A merged model has no nodes. */
                            .moving = model->file && model->moving && !(model->merge > 0),
                            .plays = model->file && model->plays,
                            .variant = model->variant,
@@ -123,7 +123,7 @@ static uint32_t element_of(masu_bake_content *content, const masu_blob_meso *m) 
     return (uint32_t)count;
 }
 
-/* The changes, with the numbers that their pictures and curves have in the scene. */
+/* The overrides, with the scene's indices of their images and curves. */
 static masu_bake_overrides settle(model_builder *b, const masu_bake_model *model) {
     masu_bake_overrides out = {masu_bake_take(&b->pool, model->change_count * sizeof *out.items),
                                model->change_count};
@@ -145,7 +145,8 @@ static masu_bake_overrides settle(model_builder *b, const masu_bake_model *model
     return out;
 }
 
-/* The variant with these values, new if there is none: meshes are per variant, vertices shared. */
+/* The variant with these values, created if missing: meshes are per variant, vertices are
+ * shared. */
 static variant *variant_of(model_builder *b, loaded_model *of,
                            const masu_bake_overrides *overrides) {
     for (variant *v = of->variants; v; v = v->next) {
@@ -159,8 +160,8 @@ static variant *variant_of(model_builder *b, loaded_model *of,
 
 /* ---- placement ---- */
 
-/* Scales the longest side of the box of what is shown, and moves the box by its centre or the
- * middle of its lower face. */
+/* Scales the longest side of the model's bounds, and moves the bounds by their centre or the centre
+ * of their lower face. */
 static bool fit(const model_builder *b, const masu_bake_model *model,
                 const masu_bake_content *piece, masu_bake_affine *placement) {
     const masu_bake_fit *f = &model->fit;
@@ -185,7 +186,7 @@ static bool fit(const model_builder *b, const masu_bake_model *model,
     return true;
 }
 
-/* Places it once, with a name of its own. */
+/* Places it once, with a separate name. */
 static bool place(model_builder *b, const masu_bake_model *model, const char *name, bool hidden,
                   loaded_model *from, uint32_t *like) {
     masu_bake_content *content = b->content;
@@ -211,7 +212,7 @@ static bool place(model_builder *b, const masu_bake_model *model, const char *na
                                          name);
     if (problem) return masu_bake_wrong(b->description, model->where, "gives %s", problem);
     masu_bake_place_cameras(content, &from->piece, &placement, name);
-    if (*like == MASU_BLOB_NONE && model->lights > 0) /* not of its pooled copies */
+    if (*like == MASU_BLOB_NONE && model->lights > 0) /* not for pooled copies */
         masu_bake_place_suns(content, &from->piece, &placement, model->lights);
     if (!v->residence.scaled) from->residence = v->residence;
     if (!model->moving || masu_bake_count(content, MASU_BLOB_INSTANCES) == first) return true;
@@ -222,7 +223,7 @@ static bool place(model_builder *b, const masu_bake_model *model, const char *na
     return true;
 }
 
-/* The host finds the first of a name alone. */
+/* The host only finds the first model of a name. */
 static void warn_of_namesake(const model_builder *b, const masu_bake_model *model) {
     const masu_bake_content *c = b->content;
     for (uint64_t i = 0; model->moving && model->name && i < masu_bake_count(c, MASU_BLOB_MODELS);
@@ -244,7 +245,7 @@ static void warn_of_changes(const model_builder *b, const masu_bake_model *model
     }
 }
 
-/* The model, and its spare ones: "car", "car.1", "car.2". */
+/* Places the model and its pooled copies: "car", "car.1", "car.2". */
 static bool place_all(model_builder *b, const masu_bake_model *model, loaded_model *from) {
     uint32_t like = MASU_BLOB_NONE;
     warn_of_namesake(b, model);
@@ -265,7 +266,7 @@ static bool place_all(model_builder *b, const masu_bake_model *model, loaded_mod
     return true;
 }
 
-/* ---- what is said of its instances, those from `first` on ---- */
+/* ---- settings for the new instances, those from `first` on ---- */
 
 static void set_group(masu_bake_content *content, const masu_bake_model *model, uint64_t first) {
     uint32_t tag = model->moving ? MASU_BAKE_MOVING : MASU_BLOB_NONE;
@@ -292,7 +293,7 @@ static bool add_occluder(const model_builder *b, const masu_bake_model *model, u
                 b->description, where, "the mesh \"%s\" is not a box: give two corners",
                 masu_bake_name_text(content, MASU_BAKE_MESHES(content)[mesh].name));
         }
-        (void)masu_bake_add_occluder(content, mesh, box); /* it may have it already */
+        (void)masu_bake_add_occluder(content, mesh, box); /* the mesh may already have it */
     }
     return true;
 }
