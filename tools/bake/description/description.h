@@ -1,19 +1,19 @@
-/* description.h: all that a scene description says, as plain values: every member checked, every
- * default filled in that does not depend on what is in the files it names. Nothing is built yet: no
- * model has been opened, nothing has a number in the blob. docs/scene.md is the reference of the
+/* description.h: a scene description as plain values. Every member is checked, and defaults are
+ * filled in unless they depend on the contents of the files that it names. Nothing has been built:
+ * no model has been opened, nothing has an index in the blob. docs/scene.md is the reference of the
  * members.
  *
  *   read.c            the file and its members, in order
- *   read_models.c     models: files, meshes by formula, placements
- *   read_materials.c  what a model's materials are changed to
+ *   read_models.c     models: files, procedural meshes, placements
+ *   read_materials.c  changes to a model's materials
  *   read_view.c       camera, sun, sky, fog, exposure, environment map
  *   read_lights.c     punctual lights
  *   read_sdf.c        the SDF and its parameters
  *   read_quality.c    LODs, occluders, probes, reflections
  *
- * The values, arrays and texts are the description's and live in its pool. A model without a scene
- * has a description too: one model, all the rest by default. Reading can fail: a mistake is reported
- * in one line with its place in the file, and nothing has been built by then. */
+ * The values, arrays and texts are in the description's pool. A model without a scene also has a
+ * description: one model, otherwise defaults. Reading can fail: an error is reported in one line
+ * with its position in the file, before anything is built. */
 #ifndef MASU_BAKE_DESCRIPTION_H
 #define MASU_BAKE_DESCRIPTION_H
 
@@ -32,7 +32,7 @@
 /* Changes to a model's materials: values, and names that have no index in the scene yet. */
 typedef struct masu_bake_material_change {
     masu_bake_override value;            /* map[i]: picture[i] is given */
-    const char *picture[MASU_BAKE_MAPS]; /* files */
+    const char *picture[MASU_BAKE_MAPS]; /* image files */
     masu_blob_meso meso;                 /* if value.meso */
 } masu_bake_material_change;
 
@@ -51,18 +51,18 @@ typedef enum masu_bake_hides {
 } masu_bake_hides;
 
 typedef struct masu_bake_model {
-    const char *where; /* position in the description, for errors: "models[3]"; "": all of it */
-    const char *file;  /* NULL: by formula */
-    uint32_t shape;    /* of the description's shapes, without a file */
+    const char *where; /* position in the description, for errors: "models[3]"; "": the whole file */
+    const char *file;  /* NULL: procedural */
+    uint32_t shape;    /* index into the description's shapes, if there is no file */
     const char *variant; /* of the file's materials, or NULL */
     const char *name;  /* before the instances' names, or NULL */
     const char *group; /* "outer/inner", or NULL */
-    bool moving; /* it is a model of the scene for the host, too */
-    bool plays;  /* moving, if its file has clips; building decides it */
-    bool hidden; /* at first; moving, then */
+    bool moving; /* the host can move it as a model of the scene */
+    bool plays;  /* movable if its file has clips; decided during building */
+    bool hidden; /* initially; the model is then movable */
     uint32_t spare; /* number of additional hidden copies, if movable */
-    double merge;               /* cell size, metres; 0: as the file has it */
-    double lights;              /* factor of its lights' colours; 0: without them */
+    double merge;               /* cell size, metres; 0: as in the file */
+    double lights;              /* factor of its lights' colours; 0: no lights */
     masu_bake_affine placement; /* scale and rotation, before the fit */
     masu_bake_fit fit;
     masu_bake_vec3 translation;
@@ -77,20 +77,20 @@ typedef struct masu_bake_model {
 } masu_bake_model;
 
 typedef struct masu_bake_light {
-    const char *where;     /* as of models */
+    const char *where;     /* as for models */
     masu_blob_light value; /* without name and parent */
     const char *name;      /* or NULL */
-    const char *instance;  /* that it hangs on, or NULL */
+    const char *instance;  /* the instance it is attached to, or NULL */
 } masu_bake_light;
 
 typedef struct masu_bake_look {
     masu_blob_camera_key *keys; /* none: one that frames the scene */
     size_t key_count;
     const char *camera;           /* of a model, instead of keys; or NULL */
-    double fov_y;                 /* degrees, of that one */
+    double fov_y;                 /* degrees, of that camera */
     bool own_fov_y;               /* given by the scene */
-    double height;                /* of an orthographic one, metres; 0: perspective */
-    double near;                  /* metres; 0: by default */
+    double height;                /* of an orthographic camera, metres; 0: perspective */
+    double near;                  /* metres; 0: the default */
     masu_bake_vec3 sun_direction; /* towards the sun */
     masu_bake_vec3 sun_color;
     double sun_intensity;
@@ -136,34 +136,34 @@ typedef struct masu_bake_sdf {
 } masu_bake_sdf;
 
 typedef struct masu_bake_description {
-    const char *file; /* that was read */
-    /* camera, light, ground and reflections by the model's shape (build/first_look.h) */
+    const char *file; /* the file that was read */
+    /* camera, light, ground and reflections depend on the model's shape (build/first_look.h) */
     bool first_look;
     bool default_reflections; /* not set by the scene: off for very many triangles */
     masu_bake_model *models;
     size_t model_count;
-    masu_bake_shape *shapes; /* different ones */
+    masu_bake_shape *shapes; /* without duplicates */
     size_t shape_count;
     masu_bake_light *lights;
     size_t light_count;
     masu_bake_look look;
     masu_bake_environment environment;
     masu_bake_sdf sdf;
-    uint32_t lods;    /* of each mesh at most */
-    double occluders; /* minimum size in metres; 0: only the models' own */
+    uint32_t lods;    /* at most, for each mesh */
+    double occluders; /* minimum size in metres; 0: only those of the models */
     masu_bake_probe_settings probes;
     masu_bake_reflections reflections;
     masu_bake_pool pool;
 } masu_bake_description;
 
-/* Reads the scene, or makes the description of a model without a scene. False after reporting.
- * The caller releases the result, even after an error. */
+/* Reads the scene, or makes the description of a model without a scene. Returns false after
+ * reporting. The caller releases the result, even after an error. */
 bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out);
 void masu_bake_description_release(masu_bake_description *description);
 
 masu_bake_look masu_bake_default_look(void);
 
-/* For errors found while building: reports "file: where: message". Always false. */
+/* For errors found while building: reports "file: where: message". Always returns false. */
 bool masu_bake_wrong(const masu_bake_description *d, const char *where, const char *format, ...);
 
 #endif

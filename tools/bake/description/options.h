@@ -1,5 +1,5 @@
 /* options.h: the command line of masu-bake, for its three steps. main.c fills it in; the strings
- * are those of argv. */
+ * belong to argv. */
 #ifndef MASU_BAKE_OPTIONS_H
 #define MASU_BAKE_OPTIONS_H
 

@@ -2,12 +2,12 @@
  *
  *   type       "point", "spot", "sphere", "capsule", "rectangle"
  *   position   world, or object space of `instance`; likewise directions and axes
- *   color      times intensity is radiant intensity / pi of points and spots: a white diffuse surface that
- *              faces the light at one metre has this radiance. Of the others it is their radiance
- *   range      0 beyond; by default where that radiance has fallen to a hundredth; of the others six times as
- *              far, and 8 times their size; at least 6 times
+ *   color      times intensity: for points and spots, radiant intensity / pi: the radiance of a white
+ *              diffuse surface that faces the light at one metre. For other types, their radiance
+ *   range      no light beyond. Default: the distance at which that radiance has fallen to 0.01; for
+ *              other types six times as far and at least 8 times their size; at least 6 times
  *   half_u, half_v  half axes, from the centre: of a capsule to an end, of a rectangle to two sides
- *   shadows    false: it casts none
+ *   shadows    false: the light casts none
  *   inner, outer  of a spot: degrees from its axis, full light inside, none outside */
 #include "bake/description/reader.h"
 #include "bake/scene/piece.h"

@@ -1,13 +1,13 @@
-/* read_materials.c: what a scene changes of the materials of a model: all of them ("material"), or
- * those whose name or picture matches a pattern ("materials"). The curves of a small relief, as
- * masu-meso writes them, stand in place or in a file of their own, which is read here too. */
+/* read_materials.c: a scene's changes to the materials of a model: to all ("material"), or to those
+ * whose name or image matches a pattern ("materials"). The curves of a small relief, as masu-meso
+ * writes them, are inline or in a separate file, which is read here too. */
 #include "bake/description/reader.h"
 
 #include <string.h>
 
-/* ---- pictures ---- */
+/* ---- images ---- */
 
-/* The members that name a picture, and what it stands for. */
+/* The members that name an image, and its use. */
 static const struct {
     const char *member;
     int map;
@@ -66,7 +66,7 @@ static bool read_alpha(const masu_bake_json *at, masu_bake_override *out) {
 
 /* ---- other values ---- */
 
-/* A number, or one along u and one along v. */
+/* One number, or two: for u and for v. */
 static bool read_detail(const masu_bake_json *at, masu_bake_override *out) {
     masu_bake_json detail = masu_bake_json_member(at, "detail");
     if (!detail.value) return true;
@@ -83,7 +83,8 @@ static bool read_detail(const masu_bake_json *at, masu_bake_override *out) {
     return out->detail = true;
 }
 
-/* How what is transparent is mixed with what is behind; saying so makes it transparent. */
+/* How a transparent material is blended with the background; this member makes a material
+ * transparent. */
 static bool read_blend(const masu_bake_json *at, masu_bake_override *out) {
     const char *blend = NULL;
     double opacity = 1;

@@ -1,13 +1,13 @@
-/* read_models.c: the "models" of a scene: what each shows (a file, or a mesh by formula), where it
- * is placed, and what is said of its instances. Placed is
- * translate * fit * rotate * scale   of the model as its file has it. */
+/* read_models.c: the "models" of a scene: the source of each (a file, or a procedural mesh), its
+ * placement, and the settings of its instances. The placement is translate * fit * rotate * scale
+ * of the model as in its file. */
 #include "bake/light/emitters.h"
 #include "bake/description/reader.h"
 #include "bake/scene/groups.h"
 
 #include <string.h>
 
-/* ---- meshes by formula ---- */
+/* ---- procedural meshes ---- */
 
 static bool read_sphere(const masu_bake_json *at, masu_bake_shape *out) {
     static const char *const members[] = {"radius", "subdivisions", "tile", NULL};
@@ -65,7 +65,7 @@ static bool read_shape(const masu_bake_json *mesh, masu_bake_shape *out) {
     return box.value ? read_box(&box, out) : read_plane(&plane, out);
 }
 
-/* Meshes that are written alike are one. `written`: the JSON of each, borrowed. */
+/* Meshes with equal JSON are shared. `written`: the JSON of each, borrowed. */
 static bool read_mesh(const masu_bake_json *mesh, masu_bake_reader *r, const json_t **written,
                       uint32_t *index) {
     masu_bake_description *out = r->out;
@@ -128,7 +128,7 @@ static bool read_fit(const masu_bake_json *model, masu_bake_fit *out) {
     return masu_bake_json_wrong(&fit, "expected either \"center\" or \"base\", found both");
 }
 
-/* true, or the height of the ground where nothing else is below. */
+/* true, or the height of the ground if there is nothing else below. */
 static bool read_drop(const masu_bake_json *model, masu_bake_model *out) {
     masu_bake_json drop = masu_bake_json_member(model, "drop");
     const double most = MASU_BAKE_COORDINATE_MAX;
@@ -179,7 +179,7 @@ static bool read_group(const masu_bake_json *model, masu_bake_reader *r, masu_ba
     return true;
 }
 
-/* Two corners: a box in each mesh of the model; true: the mesh itself is one. */
+/* Two corners: a box in each mesh of the model; true: the mesh itself is a box. */
 static bool read_occluder(const masu_bake_json *model, masu_bake_model *out) {
     masu_bake_json at = masu_bake_json_member(model, "occluder");
     const double most = MASU_BAKE_COORDINATE_MAX;

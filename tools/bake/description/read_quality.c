@@ -1,8 +1,8 @@
-/* read_quality.c: what a scene asks to be made of it so that it is drawn faster or looks better:
- * LODs and occluders, light probes, reflections. */
+/* read_quality.c: the parts of a scene that make rendering faster or better: LODs and occluders,
+ * light probes, reflections. */
 #include "bake/description/reader.h"
 
-#define SUNS_APART 0.017 /* radians: nearer ones cannot be told apart */
+#define SUNS_APART 0.017 /* radians: closer ones are indistinguishable */
 
 bool masu_bake_read_detail(const masu_bake_json *scene, masu_bake_reader *r) {
     masu_bake_description *out = r->out;
@@ -96,7 +96,7 @@ bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_reader *r) {
            masu_bake_json_number(&probes, "bias", 0, 1, &s->bias) && read_suns(&probes, s);
 }
 
-/* The grid is that of the probes where the scene has those too. */
+/* If the scene has probes too, the grid is theirs. */
 bool masu_bake_read_bounce(const masu_bake_json *scene, masu_bake_reader *r) {
     masu_bake_probe_settings *s = &r->out->probes;
     static const char *const members[] = {"spacing", "box", NULL};

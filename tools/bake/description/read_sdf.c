@@ -1,5 +1,5 @@
-/* read_sdf.c: what a scene says of its SDF. The field itself, in GLSL or in the language of
- * docs/sdf.md, is a file that is named here and compiled when the scene is built. */
+/* read_sdf.c: the SDF settings of a scene. The field itself, in GLSL or in the language of
+ * docs/sdf.md, is a separate file that is compiled when the scene is built. */
 #include "bake/description/reader.h"
 #include "bake/base/file.h"
 
@@ -159,18 +159,18 @@ bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
     return true;
 }
 
-/* ---- a .sdf alone ---- */
+/* ---- a .sdf without a scene ---- */
 
-/* An endless part is drawn to this distance, in radii of what the camera sees. */
+/* An endless part is drawn to this distance, in radii of the visible bounds. */
 #define UNBOUNDED_RADII 20
-/* Metres that the camera sees of a field that is endless along an axis. */
+/* Metres of an endless axis that the camera frames. */
 #define UNBOUNDED_EXTENT 5
 
 static double *axis_of(masu_bake_vec3 *v, int axis) {
     return axis == 0 ? &v->x : axis == 1 ? &v->y : &v->z;
 }
 
-/* The box of the bounded parts, or of `all`; per axis what is finite. */
+/* The bounds of the bounded parts, or of `all` parts; for each axis only the finite ones. */
 static masu_bake_box framed_box(const masu_sdfc_result *field, bool all) {
     masu_bake_box box = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     for (int axis = 0; axis < 3; axis++) {
@@ -225,14 +225,14 @@ static void frame_field(const masu_sdfc_result *field, const masu_bake_options *
 bool masu_bake_describe_sdf(const masu_bake_options *options, masu_bake_description *out) {
     masu_bake_buffer text = {0};
     masu_sdfc_result field = {0};
-    /* Its claims are tested when it is built. */
+    /* Building tests the claims. */
     const masu_sdfc_options quick = {.pairs = UINT32_MAX};
     char error[4096];
     if (!masu_bake_read_file(options->input, MASU_SDFC_SOURCE_MAX, &text)) return false;
     bool good = masu_sdfc_compile_with((const char *)text.data, text.bytes, options->input, &quick,
                                        &field, error, sizeof error);
     if (good) {
-        out->sdf.lipschitz = 1; /* replaced by the compiler's */
+        out->sdf.lipschitz = 1; /* replaced by the compiler's value */
         out->sdf.source = masu_bake_take_text(&out->pool, options->input);
         frame_field(&field, options, out);
     } else {

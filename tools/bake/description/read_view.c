@@ -1,6 +1,6 @@
-/* read_view.c: what a scene says of its camera path and of its light: sun, sky, fog, ambient
- * occlusion, exposure, environment map. What it does not say is a three-quarter view of the whole
- * scene under a high sun. */
+/* read_view.c: the camera path and the lighting of a scene: sun, sky, fog, ambient occlusion,
+ * exposure, environment map. The default is a three-quarter view of the whole scene under a high
+ * sun. */
 #include "bake/description/reader.h"
 
 #include <string.h>
@@ -145,8 +145,8 @@ static bool read_sun(const masu_bake_json *scene, const masu_bake_reader *r) {
     return true;
 }
 
-/* With a turbidity the sky follows from the sun: two colours, an ambient light of one's own and a
- * ground without turbidity would be said in vain. */
+/* With a turbidity the sky follows from the sun: two colours, a separate ambient light or a ground
+ * without turbidity would have no effect. */
 static bool read_sky(const masu_bake_json *scene, masu_bake_look *l) {
     static const char *const members[] = {"zenith", "horizon", "turbidity", "ground", NULL};
     masu_bake_json sky = masu_bake_json_member(scene, "sky");
@@ -179,7 +179,8 @@ static bool read_occlusion(const masu_bake_json *scene, masu_bake_look *l) {
             masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius));
 }
 
-/* A number is the exposure; an object asks for a metered one. And whether edges are smooth. */
+/* A number is the exposure; an object requests a metered one. Also reads whether edges are
+ * smooth. */
 static bool read_exposure(const masu_bake_json *scene, masu_bake_look *l) {
     static const char *const members[] = {"factor", "brighten", "darken", NULL};
     masu_bake_json exposure = masu_bake_json_member(scene, "exposure");
@@ -193,8 +194,8 @@ static bool read_exposure(const masu_bake_json *scene, masu_bake_look *l) {
            masu_bake_json_number(&exposure, "darken", 1e-6, 1e6, &l->darken);
 }
 
-/* The density at a height, or how far one sees there: to where 0.02 of the contrast is left
- * (Koschmieder 1924). */
+/* The density at a height, or the visibility there: the distance at which 0.02 of the contrast is
+ * left (Koschmieder 1924). */
 static bool read_fog(const masu_bake_json *scene, masu_bake_look *l) {
     static const char *const members[] = {"color",   "density", "visibility", "height",
                                           "falloff", "start",   NULL};
@@ -220,7 +221,7 @@ static bool read_fog(const masu_bake_json *scene, masu_bake_look *l) {
 
 bool masu_bake_read_look(const masu_bake_json *scene, masu_bake_reader *r) {
     masu_bake_look *l = &r->out->look;
-    l->occlusion = !r->bare && r->out->model_count > 0; /* a field has its own, which is exact */
+    l->occlusion = !r->bare && r->out->model_count > 0; /* a field has its own, exact one */
     return read_camera(scene, r) && read_sun(scene, r) && read_sky(scene, l) &&
            read_fog(scene, l) && read_occlusion(scene, l) &&
            masu_bake_json_vec3(scene, "ambient", 0, RADIANCE_MAX, &l->ambient) &&
