@@ -34,7 +34,7 @@ void masu_bake_param_macro(const char *name, char *out, size_t room) {
 
 static bool write_text(const char *directory, const char *name, const void *text, size_t bytes) {
     char *path = masu_bake_join(directory, name);
-    char *slash = path + strlen(directory); /* make the directories in between */
+    char *slash = path + strlen(directory); /* create the intermediate directories */
     while ((slash = strchr(slash + 1, '/'))) {
         *slash = '\0';
         mkdir(path, 0700);
@@ -43,7 +43,7 @@ static bool write_text(const char *directory, const char *name, const void *text
     FILE *file = fopen(path, "wb");
     bool good = file && fwrite(text, 1, bytes, file) == bytes;
     int cause = errno;
-    if (file && fclose(file) != 0 && good) { /* a short text is written here */
+    if (file && fclose(file) != 0 && good) { /* writes a short text; may fail here */
         cause = errno;
         good = false;
     }
@@ -54,7 +54,7 @@ static bool write_text(const char *directory, const char *name, const void *text
 
 static void append_scene_header(masu_bake_buffer *text, const masu_bake_content *content,
                                 const char *glsl_path) {
-    /* docs/scene.md promises version 450, of which 440 lacks this for fields (shaders/shaders.mk
+    /* docs/scene.md specifies version 450, of which 440 lacks this for fields (shaders/shaders.mk
      * says why 440). */
     masu_bake_append_text(text, "#extension GL_EXT_shader_integer_mix : require\n");
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
@@ -83,7 +83,7 @@ bool masu_bake_is_sdf(const char *path) {
     return length > 4 && strcmp(path + length - 4, ".sdf") == 0;
 }
 
-/* Every line of a message by itself: "file:1:2: expected ...", the line, the caret. */
+/* Reports each line of a message separately: "file:1:2: expected ...", the line, the caret. */
 void masu_bake_report_lines(const char *text, bool warnings) {
     while (*text) {
         int length = (int)strcspn(text, "\n");
@@ -104,13 +104,13 @@ static void take_params(const masu_sdfc_result *scene, masu_bake_content *conten
     }
 }
 
-/* The parts' data, and the code's shape that depends on them. */
+/* Adds the parts' data, and sets the flags that depend on them. */
 static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content, bool *dynamic) {
     static const float no_slot = 0.0f;
     masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
     sdf->part_count = scene->part_count;
     sdf->block_words = scene->block_words;
-    /* nothing in it depends on where it is */
+    /* no part depends on its position */
     if (!scene->anchored) sdf->flags &= ~MASU_SDF_ANCHORED;
     if (scene->timeless) sdf->flags |= MASU_SDF_TIMELESS;
     masu_bake_append(&content->section[MASU_BLOB_SLOTS],
@@ -120,7 +120,7 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     content->sdf_glossiest = (float)scene->glossiest;
 }
 
-/* A field that is written by hand says with a line of its own that it has terms
+/* True if a hand-written field declares, with a line of its text, that it has terms
  * (shaders/sdf/terms.glsl). */
 static bool has_terms(const masu_bake_buffer *text) {
     static const char line[] = "#define MASU_SDF_TERMS";
@@ -133,7 +133,7 @@ static bool has_terms(const masu_bake_buffer *text) {
 
 #define PATH_STEPS 4u /* from key to key */
 
-/* Points of the camera's path inside the SDF's bounds; free() them. */
+/* Points of the camera's path inside the SDF's bounds; the caller frees them. */
 static masu_sdfc_camera *path_of(const masu_bake_content *content, uint32_t *count) {
     const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
     const masu_blob_camera_key *keys =
@@ -159,7 +159,7 @@ static masu_sdfc_camera *path_of(const masu_bake_content *content, uint32_t *cou
     return out;
 }
 
-/* `scene` is the caller's to release, whatever is returned. */
+/* The caller releases `scene`, also after a failure. */
 static bool compile_scene(const char *path, masu_bake_content *content, masu_bake_buffer *out,
                           bool *dynamic, masu_sdfc_result *scene) {
     masu_bake_buffer own = {0};
@@ -192,7 +192,7 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
     return good;
 }
 
-/* Constants and not data: what a scene does not ask for is then not in its code. */
+/* Written as constants, not data: unused features then cost no code. */
 static bool write_occlusion(const char *directory, const masu_bake_occlusion *o) {
     char text[512];
     int n =
@@ -241,7 +241,7 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
 
 /* ---- running the tools ---- */
 
-/* Without the directory that exists only now: "/tmp/masu-bake-x/march.comp" -> "march.comp". */
+/* Removes the temporary directory from a line: "/tmp/masu-bake-x/march.comp" -> "march.comp". */
 static void hide_directory(char *line, const char *directory) {
     size_t length = strlen(directory);
     for (char *at = line; (at = strstr(at, directory));) {
@@ -250,7 +250,7 @@ static void hide_directory(char *line, const char *directory) {
     }
 }
 
-/* glslang says "ERROR: FILE:LINE: message" and a count at the end. */
+/* glslang prints "ERROR: FILE:LINE: message" and a count at the end. */
 static void report_compiler(char *text, const char *directory, const char *glsl_path) {
     bool about_contract = false, scene_blamed = false;
     int shown = 0;
@@ -262,8 +262,8 @@ static void report_compiler(char *text, const char *directory, const char *glsl_
         if (!error || strstr(line, "compilation errors.  No code") || shown >= ERRORS_SHOWN) {
             continue;
         }
-        /* After an error in the scene's own file glslang loses what follows it: more errors in our
-         * headers say nothing new. */
+        /* After an error in the scene's own file, glslang loses the following definitions: more
+         * errors in the library's headers give no new information. */
         bool own = strncmp(line + 7, glsl_path, strlen(glsl_path)) == 0;
         if (scene_blamed && !own) continue;
         scene_blamed = scene_blamed || own;
@@ -323,8 +323,8 @@ static bool load_whole_vectors(const char *path, const char *glsl_path) {
     }
 }
 
-/* What the module was compiled for, in the module itself: masu_scene_bind compares it with the
- * blob's numbers. */
+/* Writes the parameters of the compilation into the module; masu_scene_bind compares them with the
+ * blob's values. */
 static bool put_record(const char *path, const masu_module_counts *counts, const char *glsl_path) {
     masu_bake_buffer words = {0};
     uint32_t record[MASU_MODULE_RECORD_WORDS] = {MASU_MODULE_RECORD_FIRST};
@@ -346,7 +346,7 @@ static bool put_record(const char *path, const masu_module_counts *counts, const
     return good;
 }
 
-/* counts: NULL for what goes into no blob. */
+/* counts: NULL for modules that are not part of a blob. */
 static bool run_tools(const paths *p, bool has_raster, const char *directory,
                       const char *glsl_path, const masu_module_counts *counts) {
     const char *const compile[] = {"glslangValidator",
@@ -361,7 +361,7 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                    "-o",
                                    p->raw,
                                    p->source,
-                                   p->define, /* NULL: the list ends here */
+                                   p->define, /* NULL ends the list */
                                    NULL};
     const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
     const char *const optimise[] = {
@@ -416,14 +416,16 @@ enum {
     BOUNCED
 };
 
-/* The shaders that are compiled together with the scene's field, and the sections they go to.
- * The march is first: what does not compile is reported under its name. */
+/* The shaders that are compiled together with the scene's field, and their sections. The march is
+ * first, so compile errors are reported under its name. */
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
-    int when; /* always; with a field that may change; with slots that change, or with time; with --variants; with shadows or
-                 ambient occlusion; with punctual lights that cast shadows; with reflections and slots that are
-                 constant, or change; with a live bounce */
+    /* In the order of the enum: always; with a field that may change; with slots that change or an
+     * anchored field; with slots that change; with --variants; with shadows or ambient occlusion;
+     * with punctual lights that cast shadows; with reflections and slots that are constant; with
+     * reflections and slots that change; with a live bounce. */
+    int when;
 } scene_shaders[] = {
     {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
@@ -461,7 +463,7 @@ static bool wanted(int when, bool moves, bool dynamic, bool anchored, bool occlu
     return when == ALWAYS || variants;
 }
 
-/* A source of GLSL as one part. A parameter without a range has its value only. */
+/* Makes a GLSL source a single part. A parameter without a range has only its value. */
 static void source_as_part(const masu_bake_content *content, masu_sdfc_result *scene) {
     const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
     masu_sdfc_part *part = scene->parts = masu_bake_allocate(sizeof *scene->parts);
@@ -486,7 +488,7 @@ static void source_as_part(const masu_bake_content *content, masu_sdfc_result *s
     }
 }
 
-/* The least constant that masu-bake takes, and how much above the steepest slope that was found. */
+/* The least constant that masu-bake accepts, and the margin above the steepest slope found. */
 #define LEAST_LIPSCHITZ 1e-3
 #define AUTO_MARGIN 1.05
 
@@ -512,8 +514,8 @@ static bool run_quietly(const char *const *arguments) {
     return result.end == MASU_BAKE_EXITED && result.code == 0;
 }
 
-/* Whether the surface of a source of GLSL may depend on time. A surface that uses functions which are
- * not documented does not compile here, and is assumed to. */
+/* True if the surface of a GLSL source may depend on time. A surface that uses undocumented
+ * functions does not compile here, and is assumed to depend on time. */
 static bool surface_reads_time(const paths *p) {
     const char *const compile[] = {"glslangValidator", "-V", "--target-env", "vulkan1.1",
                                    p->include_here, p->include_scene, "-DMASU_TRY_SURFACE", "-S",
@@ -529,7 +531,7 @@ static bool surface_reads_time(const paths *p) {
     return time;
 }
 
-/* The first parameter that a host may change, or NULL. */
+/* The first parameter that a host can change, or NULL. */
 static const char *changing_param(const masu_bake_content *content) {
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
         const masu_blob_sdf_param *p =
@@ -539,8 +541,8 @@ static const char *changing_param(const masu_bake_content *content) {
     return NULL;
 }
 
-/* Decides whether the field may change from frame to frame. reads: of GLSL, in a source or in blocks.
- * False: the scene declares a static field, and this one is not. */
+/* Decides whether the field may change from frame to frame. reads: the inputs that GLSL reads, in a
+ * source or in blocks. False: the scene declares a static field, but the field may change. */
 static bool decide_moves(const masu_bake_content *content, const masu_sdfc_result *scene,
                          masu_bake_reads reads, bool is_static, const char *path, bool *moves) {
     const char *param = reads.params ? changing_param(content) : NULL;
@@ -560,8 +562,8 @@ static bool decide_moves(const masu_bake_content *content, const masu_sdfc_resul
     return false;
 }
 
-/* Right after the march, which has said what does not compile: a field that is too steep is refused
- * before the other shaders take their time. */
+/* Called directly after the march has compiled: a field that is too steep is rejected before the
+ * other shaders are compiled. */
 static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, const char *directory,
                        char *include_here, char *include_scene, const char *path,
                        masu_bake_reads *reads) {
@@ -608,7 +610,7 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
     return good;
 }
 
-/* Those that a program adds to other scenes have no shadows of the SDF: it is not compiled for
+/* Lights that a program adds to other scenes have no SDF shadows: these are not compiled for
  * them. */
 static bool any_light_casts(const masu_bake_content *content) {
     const masu_blob_light *lights = MASU_BAKE_ARRAY(content, MASU_BLOB_LIGHTS, const masu_blob_light);

@@ -1,11 +1,11 @@
-/* sdf.h: the scene's GLSL, or its .sdf text (docs/sdf.md) by way of the SDF compiler, becomes the
- * march shader that travels in the blob.
+/* sdf.h: compiles the scene's GLSL, or its .sdf text (docs/sdf.md) through the SDF compiler, to the
+ * march shader of the blob.
  *
- * The march shader and its headers are part of masu-bake (scene_sources.h, made by the build).
- * They are laid out in a temporary directory together with sdf_scene.glsl, which holds one
- * #define per parameter and the scene's own text, and go through glslangValidator, spirv-val,
- * spirv-opt, whole_vectors.h and spirv-val again: the optimiser is a program like any other.
- * docs/scene.md states what the scene's GLSL must define. */
+ * The march shader and its headers are part of masu-bake (scene_sources.h, made by the build). They
+ * are written to a temporary directory together with sdf_scene.glsl, which contains one #define per
+ * parameter and the scene's own text. The steps are glslangValidator, spirv-val, spirv-opt,
+ * whole_vectors.h and spirv-val again, because the optimiser can have bugs too. docs/scene.md
+ * lists the functions that the GLSL defines. */
 #ifndef MASU_BAKE_SDF_H
 #define MASU_BAKE_SDF_H
 
@@ -13,25 +13,25 @@
 
 #define MASU_BAKE_TOOL_SECONDS 120
 
-/* What the SDF takes away from the light of surfaces; docs/scene.md. */
+/* How much the SDF occludes the light on surfaces; docs/scene.md. */
 typedef struct masu_bake_occlusion {
     bool shadows, ambient;
     double sun_radius; /* radians */
-    double distance;   /* longest shadow ray */
+    double distance;   /* the longest shadow ray */
     double radius, strength;
 } masu_bake_occlusion;
 
-/* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances, lights and SDF parameters are
- * complete: they decide how the shader is compiled. A .sdf brings its own parameters, which are
- * added. reflected: rays of reflections meet it. is_static: the scene declares that the field never
- * changes; one that reads time, or a parameter that may change, is then an error. A field that does
- * neither is static without the declaration: the blob then has no VELOCITY_SPIRV.
- * Reports errors under the GLSL's own name and lines. */
+/* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances, lights and SDF parameters
+ * must be complete: they decide how the shader is compiled. The parameters of a .sdf are added.
+ * reflected: reflection rays can hit it. is_static: the scene declares that the field never
+ * changes; a field that reads time, or has a parameter that may change, is then an error. A field
+ * that does neither is static without the declaration: the blob then has no VELOCITY_SPIRV. Errors
+ * have the name and line numbers of the GLSL. */
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                              const masu_bake_occlusion *occlusion, bool is_static, bool reflected, bool bounced,
                              bool variants);
 
-/* Whether a source is a file in the language of docs/sdf.md. */
+/* True if a source is a file in the language of docs/sdf.md. */
 bool masu_bake_is_sdf(const char *path);
 
 /* Prints each line of the SDF compiler's messages as an error or a warning. */

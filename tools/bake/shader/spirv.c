@@ -1,8 +1,8 @@
 /* spirv.c: see spirv.h.
  *
  * Every value is a row of cells: components of a vector, columns of a matrix, members of an array
- * or struct. Rows and variables have fixed positions in one array of cells, since SPIR-V shaders
- * have no recursion; a pointer is an index. Instruction numbers are those of the specification. */
+ * or struct. Rows and variables have fixed positions in one array of cells, because SPIR-V shaders
+ * have no recursion; a pointer is an index. Instruction numbers are those in the specification. */
 #include "bake/shader/spirv.h"
 
 #include <math.h>
@@ -17,8 +17,8 @@
 typedef masu_bake_cell cell;
 
 typedef struct type {
-    uint32_t op, element, count, cells; /* element: of vectors, matrices, arrays, pointers */
-    const uint32_t *members;            /* of structs: their types */
+    uint32_t op, element, count, cells; /* element: for vectors, matrices, arrays, pointers */
+    const uint32_t *members;            /* for structs: their types */
 } type;
 
 struct masu_bake_machine {
@@ -28,15 +28,15 @@ struct masu_bake_machine {
     type *types;     /* by id */
     uint32_t *of;    /* by id: its type */
     uint32_t *at;    /* by id: its first cell */
-    uint32_t *where; /* by id: word of a label or function */
+    uint32_t *where; /* by id: offset of a label or function in the module */
     uint32_t *binding;
     cell *cells;
-    double *decisions; /* by id; NAN: not decided in this run */
-    uint32_t *decided; /* ids of the others */
+    double *decisions; /* by id; NAN: no decision in this run */
+    uint32_t *decided; /* the ids with a decision */
     size_t decided_count;
     char *error;
     size_t error_size;
-    uint64_t steps; /* instructions of all runs */
+    uint64_t steps; /* instructions in all runs */
 };
 
 enum {
@@ -118,10 +118,10 @@ static void constant(masu_bake_machine *m, uint32_t op, const uint32_t *w, uint3
     }
 }
 
-/* Types, constants and variables in the order of the module, in which each is declared before it is
- * used; results of instructions get their cells. */
+/* Loads types, constants and variables in the order of the module, in which each is declared before
+ * its use; results of instructions get their cells. */
 static bool load(masu_bake_machine *m) {
-    bool inside = false; /* a function */
+    bool inside = false; /* within a function */
     for (size_t i = 5; i < m->word_count;) {
         const uint32_t *w = m->words + i;
         uint32_t op = w[0] & 0xFFFF, count = w[0] >> 16;
@@ -129,7 +129,7 @@ static bool load(masu_bake_machine *m) {
             return refuse(m, "a broken instruction at word", (uint32_t)i);
         if (op >= 19 && op <= 33) {
             if (!take_type(m, op, w, count)) return false;
-        } else if (op == 59) { /* variable: its pointer, then what it points to */
+        } else if (op == 59) { /* variable: its pointer, then its value */
             if (!place(m, w[2], w[1], 1)) return false;
             m->cells[m->at[w[2]]].u = (uint32_t)m->cell_count;
             m->cell_count += m->types[m->types[w[1]].element].cells;
@@ -223,7 +223,7 @@ const double *masu_bake_machine_decisions(const masu_bake_machine *m, size_t *co
     return m->decisions;
 }
 
-/* Of a vector the component that is nearest to deciding otherwise. */
+/* For a vector, keeps the component closest to the opposite decision. */
 static void decide(masu_bake_machine *m, uint32_t id, uint32_t i, double by) {
     if (isnan(m->decisions[id])) {
         m->decisions[id] = (double)INFINITY;
@@ -232,7 +232,7 @@ static void decide(masu_bake_machine *m, uint32_t id, uint32_t i, double by) {
     if (i == 0 || fabs(by) < fabs(m->decisions[id])) m->decisions[id] = by;
 }
 
-/* Where x is between two sides, above 0, or outside. */
+/* Positive if x is between a and b, negative outside. */
 static double between(double x, double a, double b) { return fmin(x - fmin(a, b), fmax(a, b) - x); }
 
 /* ---- GLSL.std.450 ---------------------------------------------------------------------------- */
@@ -248,7 +248,7 @@ static double smooth(double a, double b, double x) {
     return t * t * (3 - 2 * t);
 }
 
-/* One component. False: not known. */
+/* One component. False: unsupported. */
 static bool component(uint32_t op, cell a, cell b, cell c, cell *r) {
     int32_t s = (int32_t)a.u, t = (int32_t)b.u;
     switch (op) {
@@ -336,7 +336,7 @@ static bool extended(masu_bake_machine *m, const uint32_t *w, uint32_t count) {
                 return refuse(m, "GLSL.std.450 instruction", op);
             double x = a[0][i].f, y = a[1][i].f;
             if (op == 37 || op == 79 || op == 40 || op == 80 || op == 48) decide(m, w[2], i, x - y);
-            if (op == 27 || op == 29) decide(m, w[2], i, x + 1); /* a peak: 0 nearly everywhere */
+            if (op == 27 || op == 29) decide(m, w[2], i, x + 1); /* a spike: 0 nearly everywhere */
             if (op == 43 || op == 81) decide(m, w[2], i, between(x, y, a[2][i].f));
             if (op == 49) decide(m, w[2], i, between(a[2][i].f, x, y));
         }
@@ -346,10 +346,10 @@ static bool extended(masu_bake_machine *m, const uint32_t *w, uint32_t count) {
 
 /* ---- Instructions ---------------------------------------------------------------------------- */
 
-/* One component of what takes one or two operands. False: not known. */
+/* One component of an instruction with one or two operands. False: unsupported. */
 static bool arithmetic(uint32_t op, cell a, cell b, cell *r) {
     int32_t s = (int32_t)a.u, t = (int32_t)b.u;
-    bool none = isnan(a.f) || isnan(b.f); /* asked of floats only */
+    bool none = isnan(a.f) || isnan(b.f); /* used for floats only */
     switch (op) {
     case 109: r->u = a.f > 0 ? a.f < 4294967296.0 ? (uint32_t)a.f : UINT32_MAX : 0; return true;
     case 110:
@@ -425,7 +425,7 @@ static uint32_t component_type(const masu_bake_machine *m, uint32_t type_id) {
     return t->op == T_VECTOR ? m->types[t->element].op : t->op;
 }
 
-/* Bits are those of single precision, as on the GPU. */
+/* The bits have single precision, as on the GPU. */
 static void bitcast(const masu_bake_machine *m, uint32_t to, uint32_t from, const cell *a,
                     cell *r) {
     bool was = component_type(m, from) == T_FLOAT, is = component_type(m, to) == T_FLOAT;
@@ -447,7 +447,7 @@ static void bitcast(const masu_bake_machine *m, uint32_t to, uint32_t from, cons
     }
 }
 
-/* Steps from a composite to a part of it; false: outside. */
+/* Steps from a composite to a component; false: out of range. */
 static bool step_into(const masu_bake_machine *m, uint32_t *type_id, uint32_t index,
                       uint32_t *offset) {
     const type *t = &m->types[*type_id];
@@ -545,7 +545,7 @@ static bool composite(masu_bake_machine *m, uint32_t op, const uint32_t *w, uint
     }
 }
 
-/* What gives a value. */
+/* Instructions that produce a value. */
 static bool evaluate(masu_bake_machine *m, uint32_t op, const uint32_t *w, uint32_t count) {
     cell *r = m->cells + m->at[w[2]];
     const cell *a = count > 3 ? m->cells + m->at[w[3]] : NULL;
@@ -602,7 +602,7 @@ static size_t enter(masu_bake_machine *m, uint32_t function, const uint32_t *arg
     return i;
 }
 
-/* The phis of a block take the values that held before it: all are read, then all written. */
+/* The phis of a block take the values from before the block: all are read, then all written. */
 static size_t enter_block(masu_bake_machine *m, uint32_t label, uint32_t from) {
     size_t first = m->where[label] + 2, i = first;
     cell waiting[256];
@@ -659,7 +659,7 @@ bool masu_bake_machine_run(masu_bake_machine *m, char *error, size_t error_size)
         case 246:
         case 247:
         case 317: break;
-        case 1: break; /* undef: whatever was there */
+        case 1: break; /* undef: the value is unchanged */
         case 248: block = w[1]; break;
         case 62:
             memmove(m->cells + m->cells[m->at[w[1]]].u, m->cells + m->at[w[2]],

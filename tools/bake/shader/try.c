@@ -1,6 +1,6 @@
-/* try.c: see try.h. The points come from a fixed seed: the same scene is always judged
- * alike. Runs in double precision, but literals and slots are floats: what differs by less than a
- * hundred-thousandth is no violation. */
+/* try.c: see try.h. The points use a fixed seed, so the same scene always gets the same result.
+ * Runs are in double precision, but literals and slots are floats: an excess below 1e-5 is not a
+ * violation. */
 #include "bake/shader/try.h"
 
 #include "bake/base/buffer.h"
@@ -17,20 +17,20 @@ enum {
     PAIRS = 4000,
     ENVIRONMENTS = 8,
     SECONDS = 600,
-    RUNS = 60000,   /* of the field, at most, that all of the below are */
+    RUNS = 60000,   /* total limit of field evaluations for all of the below */
     HALVINGS = 20,
-    BEST = 8,       /* pairs of an environment that are climbed from */
-    CLIMBS = 30,    /* steps from each */
-    SITES = 64,     /* decisions that are searched for their other side */
-    SEARCHES = 120, /* steps for each */
+    BEST = 8,       /* pairs of an environment from which climbing starts */
+    CLIMBS = 30,    /* steps from each pair */
+    SITES = 64,     /* decisions whose opposite side is searched for */
+    SEARCHES = 120, /* steps for each decision */
     BIND_SLOTS = 0,
     BIND_INPUT = 1,
     BIND_RESULT = 2
 };
-/* Instructions of all forms of parts together, in equal shares: some seconds. By instructions and
- * not by time, so that a scene is always judged alike. */
+/* Instructions for all forms of parts together, in equal shares: some seconds. Counts instructions,
+ * not time, so that a scene always gets the same result. */
 #define WORK_MAX 5e8
-#define FAR_AWAY 40.0 /* what stands for the size of something endless */
+#define FAR_AWAY 40.0 /* the assumed size of endless parts */
 #define SLACK 1e-5
 
 /* MASU_SDFC_SLOTS_MAX, MASU_SDFC_PARAMS_MAX. */
@@ -75,8 +75,8 @@ typedef struct start {
     double p[3], slope;
 } start;
 
-/* A minimum, comparison, ... of the code that decided one way at all points: the one where it was
- * nearest to the other. */
+/* A minimum, comparison, ... of the code with the same decision at all points: the point that was
+ * closest to the opposite decision. */
 typedef struct site {
     bool below, above;
     double nearest, p[3];
@@ -96,13 +96,13 @@ typedef struct trial {
     uint64_t random;
     double center[3], half[3], size;
     start best[BEST];
-    /* Of the pairs, climbs and searches: 1, or less if the form would exceed its share. */
+    /* Share of the pairs, climbs and searches: 1, or less if the form would exceed its budget. */
     double portion;
     double least_portion;
     bool measures;
     double steepest;
-    double jump[3], jumps_by; /* where a jump was found, and how large it is */
-    /* 'E' or 'W', then the message; 'S', then the steepest slope; "": nothing to say. */
+    double jump[3], jumps_by; /* the position and size of a jump */
+    /* 'E' or 'W', then the message; 'S', then the steepest slope; "": no message. */
     char text[1024];
 } trial;
 
@@ -130,7 +130,7 @@ static bool is_inside(const trial *t, const double p[3]) {
     return true;
 }
 
-/* A source of GLSL is only evaluated within its bounds. */
+/* A random point; for a GLSL source within its bounds. */
 static void any_point(trial *t, double out[3]) {
     static const double scales[] = {0.3, 1, 1.2, 4};
     double scale = scales[(int)(unit(t) * 4)], more = is_source(t) ? 0 : 0.1 * t->size;
@@ -139,7 +139,7 @@ static void any_point(trial *t, double out[3]) {
         out[i] = t->center[i] + (2 * unit(t) - 1) * scale * (t->half[i] + more);
 }
 
-/* Around p, as far as `length` along each axis, within the bounds. */
+/* A random point around p, up to `length` along each axis, within the bounds. */
 static void near_point(trial *t, const double p[3], double length, double out[3]) {
     for (int i = 0; i < 3; i++) {
         out[i] = p[i] + (2 * unit(t) - 1) * length;
@@ -189,7 +189,7 @@ static void note_decisions(trial *t, const double p[3]) {
     }
 }
 
-/* False: it cannot be run, and the text says why. */
+/* False: the field cannot be run, and the text has the reason. */
 static bool field(trial *t, const double p[3], double *f) {
     char error[256], what[128];
     for (int i = 0; i < 3 && t->input; i++) t->input[2 + i].f = p[i];
@@ -231,9 +231,8 @@ static bool keeps(trial *t, const double p[3], double fp, const double q[3], dou
     return false;
 }
 
-/* Of the halves of a pair one is as steep as the whole or steeper: going there again and again
- * finds a jump that no random pair is near enough to. The slope of a jump doubles with each
- * halving. */
+/* One half of a pair is at least as steep as the whole. Repeated bisection thus finds a jump that
+ * no random pair is close enough to. The slope of a jump doubles with each bisection. */
 static bool narrow(trial *t, double p[3], double fp, double q[3], double fq) {
     double early = 0;
     for (int i = 0; i < HALVINGS; i++) {
@@ -252,8 +251,8 @@ static bool narrow(trial *t, double p[3], double fp, double q[3], double fq) {
     return true;
 }
 
-/* Exactly the constant is the slope of the box that a block is joined with: nothing to climb
- * from. */
+/* A slope equal to the constant comes from the box that a block is combined with: nothing to
+ * climb from. */
 static bool is_flat(const trial *t, double steep) {
     return !t->measures && fabs(steep / t->part->lipschitz - 1) < 1e-6;
 }
@@ -281,7 +280,7 @@ static bool try_pair(trial *t) {
     return how < 0.75 || narrow(t, p, fp, q, fq);
 }
 
-/* The slope at p: of the pair along the gradient. */
+/* The slope at p, from the pair along the gradient. */
 static bool slope_at(trial *t, const double p[3], double *steep) {
     double f, h = 1e-4 * t->size, way[3], n = 0, q[3], fq;
     *steep = 0;
@@ -320,8 +319,8 @@ static bool climb(trial *t, const double from[3], double step) {
     return true;
 }
 
-/* Towards the other side of a decision, which may hold a part of the field that no random point
- * came upon. */
+/* Searches for the opposite side of a decision, which may contain a part of the field that no
+ * random point has reached. */
 static bool search(trial *t, const site *s, size_t id) {
     const bool above = s->above;
     double p[3], q[3], f, best = (double)INFINITY, step = 0.25 * t->size;
@@ -331,7 +330,7 @@ static bool search(trial *t, const site *s, size_t id) {
         if (!field(t, q, &f)) return false;
         double by = t->decisions[id];
         if (!isfinite(by)) continue;
-        if ((by >= 0) != above) { /* found: a pair across, and what is there */
+        if ((by >= 0) != above) { /* found: a pair across, and the slope there */
             double fp;
             if (!field(t, p, &fp) || !keeps(t, p, fp, q, f) ||
                 !narrow(t, p, fp, (double[3]){q[0], q[1], q[2]}, f))
@@ -348,7 +347,7 @@ static bool search(trial *t, const site *s, size_t id) {
     return true;
 }
 
-/* `n` of something for a whole form: what part number k of `alike` ones gets. */
+/* The share of `n` for part number k of `alike` equal parts; `n` is for the whole form. */
 static uint32_t part_of(const trial *t, double n, uint32_t k, uint32_t alike) {
     uint32_t all = (uint32_t)ceil(n * t->portion);
     return all / alike + (k < all % alike);
@@ -368,7 +367,8 @@ static bool try_environment(trial *t, uint32_t pairs, uint32_t climbs) {
     return true;
 }
 
-/* Parts of a form have the same decisions: part number k of `alike` ones searches each alike-th. */
+/* Parts of a form have the same decisions: part number k of `alike` ones searches every
+ * alike-th. */
 static bool search_all(trial *t, uint32_t k, uint32_t alike) {
     uint32_t found = 0, most = (uint32_t)ceil(SITES * t->portion);
     for (size_t i = 0; i < t->site_count && found < most; i++) {
@@ -379,7 +379,7 @@ static bool search_all(trial *t, uint32_t k, uint32_t alike) {
     return true;
 }
 
-/* The part of RUNS that the share of a form allows. */
+/* Sets the share of RUNS that the budget of a form allows. */
 static bool set_portion(trial *t, uint32_t forms) {
     double f, before = (double)masu_bake_machine_steps(t->machine);
     t->portion = 1;
@@ -392,7 +392,7 @@ static bool set_portion(trial *t, uint32_t forms) {
     return true;
 }
 
-/* Part number k of `alike` ones of a form. */
+/* Tests part number k of `alike` ones of a form. */
 static bool try_part(trial *t, uint32_t part, uint32_t k, uint32_t alike) {
     uint32_t pairs = (uint32_t)(PAIRS * t->portion / ENVIRONMENTS / alike);
     uint32_t climbs = part_of(t, BEST * ENVIRONMENTS, k, alike);
@@ -408,7 +408,7 @@ static bool try_part(trial *t, uint32_t part, uint32_t k, uint32_t alike) {
     return search_all(t, k, alike);
 }
 
-/* Whether a part is the first of its form; how many parts the form has. */
+/* True if a part is the first of its form; alike: the number of parts of the form. */
 static bool is_first(const masu_sdfc_result *s, uint32_t part, uint32_t *alike) {
     *alike = 0;
     for (uint32_t i = 0; i < s->part_count; i++) {
@@ -419,7 +419,8 @@ static bool is_first(const masu_sdfc_result *s, uint32_t part, uint32_t *alike) 
     return true;
 }
 
-/* "W", then that a camera of the path is inside one of the parts, which masu-sdfc cannot tell. */
+/* "W", then a message that a camera of the path is inside one of the parts, which masu-sdfc cannot
+ * detect. */
 static bool try_cameras(trial *t) {
     const masu_sdfc_result *s = t->scene;
     char what[128];
