@@ -1,4 +1,4 @@
-/* check.c: checks data from another process before any of its indices is used. The rules are those
+/* check.c: checks data from another process before any of its indices is used. It applies the rules
  * of blob.h for geometry, instances and materials; the runtime's own reader, masu_scene_bind,
  * checks the finished scene. */
 #include "bake/scene/check.h"

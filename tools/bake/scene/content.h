@@ -5,7 +5,7 @@
  * scene with a placement. Elements are the blob's own structs, so writing is copying.
  *
  *   content.c   the arrays, names, materials, bounds, order of instances
- *   piece.c     places pieces in a scene, with the scene's changes to their materials
+ *   piece.c     adds pieces to a scene, with the scene's changes to their materials
  *   check.c     checks a piece from another process by the rules of blob.h
  *   groups.c    the tree of groups for culling
  *   camera.c    cameras of model files

@@ -6,7 +6,7 @@
 #include "bake/scene/content.h"
 
 /* Adds the skins of a model that has just been added, with the nodes of the piece. Each skin has
- * separate vertices; a mesh that another model already uses is copied. The joints are those of the
+ * separate vertices; a mesh that another model already uses is copied. The joints belong to the
  * first model of its kind. */
 void masu_bake_add_skins(masu_bake_content *content, const masu_bake_content *piece,
                          uint32_t model);
