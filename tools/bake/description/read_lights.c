@@ -2,10 +2,11 @@
  *
  *   type       "point", "spot", "sphere", "capsule", "rectangle"
  *   position   world, or object space of `instance`; likewise directions and axes
- *   color      times intensity: for points and spots, radiant intensity / pi: the radiance of a white
- *              diffuse surface that faces the light at one metre. For other types, their radiance
- *   range      no light beyond. Default: the distance at which that radiance has fallen to 0.01; for
- *              other types six times as far and at least 8 times their size; at least 6 times
+ *   color      times intensity: for points and spots, radiant intensity / pi: the radiance of a
+ *              white diffuse surface that faces the light at one metre. For other types, their
+ *              radiance
+ *   range      no light beyond. Default: the distance at which that radiance has fallen to 0.01;
+ *              for other types six times as far and at least 8 times their size; at least 6 times
  *   half_u, half_v  half axes, from the centre: of a capsule to an end, of a rectangle to two sides
  *   shadows    false: the light casts none
  *   inner, outer  of a spot: degrees from its axis, full light inside, none outside */
@@ -58,7 +59,8 @@ static bool only_for(const masu_bake_json *at, const char *member, bool allowed,
            masu_bake_json_wrong(at, "\"%s\" is only allowed for %s", member, types);
 }
 
-/* Half axes and sides; *size: from the centre to the farthest point, 0 of points and spots. */
+/* Reads half axes and sides; *size: from the centre to the farthest point, 0 for points and
+ * spots. */
 static bool read_shape(const masu_bake_json *at, masu_blob_light *light, double *size) {
     const double most = MASU_BAKE_COORDINATE_MAX;
     bool capsule = light->type == MASU_LIGHT_CAPSULE, rectangle = light->type == MASU_LIGHT_RECTANGLE;
