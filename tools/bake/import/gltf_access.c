@@ -1,7 +1,7 @@
-/* gltf_access.c: buffer views and accessors of a glTF file become numbers; see gltf.h.
+/* gltf_access.c: converts buffer views and accessors of a glTF file to numbers; see gltf.h.
  *
- * Sizes in the file are at most 2^53 (gltf_json.c), so that sums of two of them do not overflow;
- * products are divided out. */
+ * Sizes in the file are at most 2^53 (gltf_json.c), so the sum of two does not overflow; products
+ * are checked by division. */
 #include "bake/import/gltf.h"
 
 #include <meshoptimizer.h>
@@ -113,7 +113,7 @@ typedef struct accessor {
     unsigned components, size; /* of one component, bytes */
     unsigned type;
     bool normalized;
-    uint32_t sparse; /* elements that are given apart */
+    uint32_t sparse; /* elements that are stored separately */
     const unsigned char *at, *values;
     unsigned at_type;
 } accessor;
@@ -141,7 +141,7 @@ static unsigned components_of(const char *type) {
     return 0;
 }
 
-/* `count` elements of `element` bytes, `stride` apart, of a view from `offset` on. */
+/* Finds `count` elements of `element` bytes, `stride` apart, in a view from `offset` on. */
 static bool elements(masu_gltf *g, const json_t *of, uint64_t count, size_t element, bool strided,
                      const unsigned char **data, size_t *stride) {
     json_int_t view = -1;

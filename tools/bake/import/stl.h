@@ -1,4 +1,4 @@
-/* stl.h: ASCII STL with keywords in capitals, which Assimp takes for binary. */
+/* stl.h: ASCII STL with keywords in capitals, which Assimp mistakes for binary. */
 #ifndef MASU_BAKE_STL_H
 #define MASU_BAKE_STL_H
 
@@ -6,9 +6,9 @@
 
 #include <stdbool.h>
 
-/* Whether a file is an STL, by its name. */
+/* True if a file is an STL, by its name. */
 bool masu_bake_is_stl(const char *path);
-/* Its text with keywords in lower case. False: they are, or it is binary. */
+/* Its text with keywords in lower case. False: they already are, or the file is binary. */
 bool masu_bake_lower_stl(const char *text, size_t bytes, masu_bake_buffer *out);
 
 #endif

@@ -18,7 +18,7 @@ static int by_color(const void *a, const void *b) {
     return order ? order : x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
-/* Triangles in the order of their colours. Returns how many colours. */
+/* Sorts triangles by colour. Returns how many colours. */
 static uint32_t sort_colors(const key *means, uint32_t count, key *out) {
     uint32_t colors = 0;
     memcpy(out, means, count * sizeof *out);
@@ -28,7 +28,7 @@ static uint32_t sort_colors(const key *means, uint32_t count, key *out) {
     return colors;
 }
 
-/* The mean colour of each triangle; whether all are of one colour each. */
+/* The mean colour of each triangle; returns whether each triangle has only one colour. */
 static bool mean_colors(const float *colors, uint32_t vertices, const uint32_t *indices,
                         uint32_t triangles, bool opaque, key *means, uint32_t *clamped) {
     bool plain = true;
