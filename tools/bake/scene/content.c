@@ -1,4 +1,4 @@
-/* content.c: the arrays of a scene being baked; see content.h. */
+/* content.c: the arrays of a scene during baking; see content.h. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/scene/content.h"
 
@@ -96,7 +96,7 @@ void masu_bake_content_release(masu_bake_content *content) {
 
 /* ---- attributes of vertices ---- */
 
-/* Up to `count` elements, new ones filled with `byte`. */
+/* Extends a section to `count` elements; new ones are filled with `byte`. */
 static void pad(masu_bake_content *content, uint32_t kind, uint64_t count, int byte) {
     masu_bake_buffer *section = &content->section[kind];
     size_t bytes = (size_t)count * strides[kind], old = section->bytes;
@@ -156,7 +156,8 @@ uint32_t masu_bake_encode_color(const float color[4]) {
 
 /* ---- names ---- */
 
-/* Bytes of the UTF-8 character at `text`, 0 if it is none (overlong forms and surrogates too). */
+/* Bytes of the UTF-8 character at `text`, 0 if invalid (including overlong forms and
+ * surrogates). */
 static size_t utf8_length(const unsigned char *text, size_t left) {
     static const struct {
         unsigned char mask, lead;

@@ -13,7 +13,8 @@ static void store(const masu_bake_affine *from, float to[12]) {
     for (int k = 0; k < 12; k++) to[k] = (float)from->m[k];
 }
 
-/* From the space that an instance is in to its own, if it has an inverse that floats can hold. */
+/* The transform from the space of the instance above to its own; false if the former has
+ * no inverse, or beyond the coordinate limit. */
 static bool relative(const masu_bake_affine *above, const masu_bake_affine *world,
                      masu_bake_affine *local) {
     masu_bake_affine inverse;
@@ -25,7 +26,7 @@ static bool relative(const masu_bake_affine *above, const masu_bake_affine *worl
     return true;
 }
 
-/* A node for each instance. */
+/* Adds a node for each instance. */
 static void add_instances(masu_bake_content *content, const masu_bake_content *piece, uint64_t first,
                           const masu_bake_affine *back, uint32_t first_node) {
     uint64_t count = masu_bake_count(content, MASU_BLOB_INSTANCES) - first;
@@ -46,14 +47,14 @@ static void add_instances(masu_bake_content *content, const masu_bake_content *p
     }
 }
 
-/* The piece's own; the topmost ones hold where the piece is placed. */
+/* Adds the piece's nodes; the topmost ones contain the piece's placement. */
 static void add_nodes(masu_bake_content *content, const masu_bake_content *piece, uint64_t first,
                       const masu_bake_affine *own, uint32_t first_node) {
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MODEL_NODES); i++) {
         masu_blob_model_node node = NODES(piece)[i];
         const char *text = masu_bake_name_text(piece, node.name);
         node.name = masu_bake_name(content, text, strlen(text));
-        node.skin = 0; /* masu_bake_add_skins gives it a number */
+        node.skin = 0; /* masu_bake_add_skins sets it */
         if (node.instance != MASU_BLOB_NONE) node.instance += (uint32_t)first;
         if (node.parent != MASU_BLOB_NONE) {
             node.parent += first_node;

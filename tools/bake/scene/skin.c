@@ -12,8 +12,8 @@ static void *elements(const masu_bake_content *c, uint32_t kind, uint64_t first)
     return c->section[kind].data + (size_t)first * masu_bake_stride(kind);
 }
 
-/* Appends a copy of elements of a section, which may be of the same content. Returns the first
- * one's number. */
+/* Appends a copy of elements of a section, which may be of the same content. Returns the first new
+ * index. */
 static uint32_t copy_range(masu_bake_content *to, const masu_bake_content *from, uint32_t kind,
                            uint32_t first, uint32_t count) {
     uint32_t made = (uint32_t)masu_bake_count(to, kind);
@@ -33,7 +33,7 @@ static bool is_taken(const masu_bake_content *content, uint32_t first_vertex) {
     return false;
 }
 
-/* Another mesh of the same triangles, which shares nothing with the first. */
+/* A mesh with the same triangles that shares no data with the first. */
 static uint32_t copy_mesh(masu_bake_content *c, uint32_t mesh, uint32_t first_vertex,
                           uint32_t vertex_count) {
     masu_blob_mesh made = MASU_BAKE_MESHES(c)[mesh];
@@ -51,7 +51,7 @@ static uint32_t copy_mesh(masu_bake_content *c, uint32_t mesh, uint32_t first_ve
     return (uint32_t)masu_bake_count(c, MASU_BLOB_MESHES) - 1;
 }
 
-/* The skin-th one of a model. */
+/* The index of a model's skin number `skin`. */
 static uint32_t skin_of(const masu_bake_content *content, uint32_t model, uint32_t skin) {
     uint32_t at = 0;
     while (SKINS(content)[at].model != model) at++;
