@@ -5,7 +5,7 @@
  * are written to a temporary directory together with sdf_scene.glsl, which contains one #define per
  * parameter and the scene's own text. The steps are glslangValidator, spirv-val, spirv-opt,
  * whole_vectors.h and spirv-val again, because the optimiser can have bugs too. docs/scene.md
- * lists the functions that the GLSL defines. */
+ * lists what the GLSL must define. */
 #ifndef MASU_BAKE_SDF_H
 #define MASU_BAKE_SDF_H
 
