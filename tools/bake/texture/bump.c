@@ -16,7 +16,7 @@ static bool is_grey(const uint8_t *t) {
     return high - low <= GREY;
 }
 
-/* True for vectors of about unit length with positive z. Few colours meet this, except blue
+/* True for vectors of about unit length with positive z. Few colours satisfy this, except blue
  * ones. */
 static bool is_normal(const uint8_t *t) {
     double x = (t[0] - 128) / 127.0, y = (t[1] - 128) / 127.0, z = (t[2] - 128) / 127.0;

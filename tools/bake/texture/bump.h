@@ -1,5 +1,5 @@
 /* bump.h: converts height maps to normal maps. A model's "bump map" may contain heights (grey) or
- * normals, whatever the file calls it; the texels decide. Pure functions on arrays of the caller;
+ * normals, regardless of the name; the texels decide. Pure functions on arrays of the caller;
  * they cannot fail. */
 #ifndef MASU_BAKE_BUMP_H
 #define MASU_BAKE_BUMP_H
@@ -8,7 +8,7 @@
 
 /* The height difference between black and white, as a share of the texture's longer side, at
  * strength 1. It suits textures of bricks or skin, which usually show a surface ten to a hundred
- * times as wide as it is deep. */
+ * times wider than deep. */
 #define MASU_BUMP_HEIGHT 0.01
 
 /* The steepest slope. Without this limit, adjacent black and white texels would become walls that
