@@ -3,11 +3,11 @@
  *
  *   f = coat + through(v, l) * specular + rest + diffuse
  *
- *   specular  GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014), alpha = roughness^2,
- *             Schlick's Fresnel term from f0 to f90
- *   rest      multiple scattering between facets, which the lobe lacks: the product of its losses for
- *             v and for l (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks",
- *             2017)
+ *   specular  GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014), alpha =
+ *             roughness^2, Schlick's Fresnel term from f0 to f90
+ *   rest      multiple scattering between facets, which the lobe lacks: the product of its losses
+ *             for v and for l (Kulla and Conty, "Revisiting Physically Based Shading at
+ *             Imageworks", 2017)
  *   diffuse   receives the remaining energy: the product of the remainders for v and for l (Kelemen
  *             and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001)
  *   coat      the same lobe with f0 = 0.04; only with MASU_SURFACE
@@ -36,11 +36,12 @@
  *
  * Lobes of masu_extra_lobes, one a surface:
  *   colour  f0 of any colour and strength; lower layers get the light left by the brightest channel
- *   sheen   Charlie's distribution and masking (Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017) by
- *           their fits; lower layers are scaled by the lesser of 1 - E(v), 1 - E(l) (KHR_materials_sheen). E by a fit
- *           to its integral: RMS 0.013, worst 0.05 at a cosine of 0.02
- *   grain   GGX with two alphas (Heitz 2014); albedos are those of the root mean square of both. Light looked up around
- *           the mirror direction is a mean over normals that lean along the grain (masu_fan, shade.glsl)
+ *   sheen   Charlie's distribution and masking (Estevez and Kulla, "Production Friendly Microfacet
+ *           Sheen BRDF", 2017) by their fits; lower layers are scaled by the lesser of 1 - E(v), 1
+ *           - E(l) (KHR_materials_sheen). E by a fit to its integral: RMS 0.013, worst 0.05 at a
+ *   cosine of 0.02 grain   GGX with two alphas (Heitz 2014); albedos are those of the root mean
+ *           square of both. Light looked up around the mirror direction is a mean over normals that
+ * lean along the grain (masu_fan, shade.glsl)
  *
  * All in fp32, finite for any bit pattern.
  */

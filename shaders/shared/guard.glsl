@@ -94,7 +94,7 @@ float masu_rsqrt(float x)
     return usable ? r : 0.0;
 }
 
-/* The same of an x that is known to be within 1e-30..1e30. */
+/* masu_rsqrt() for an x within 1e-30..1e30. */
 float masu_rsqrt_sure(float x)
 {
     return inversesqrt(x);
@@ -125,7 +125,8 @@ float masu_pow(float x, float y)
     return positive ? r : (exponent == 0.0 ? 1.0 : 0.0);
 }
 
-/* x^y of x above 0. Of another x anything, NaN too: for where that is not taken. */
+/* x^y for x above 0. Any other x gives any value, even NaN: only for results that are discarded
+ * then. */
 float masu_pow_above(float x, float y)
 {
     return exp2(log2(x) * y);
@@ -161,8 +162,8 @@ vec3 masu_normalize(vec3 v, vec3 fallback)
     return usable ? u : fallback;
 }
 
-/* findLSB of what is not 0, by the exponent of the lowest bit alone: no vector instruction of a CPU does
- * findLSB. */
+/* findLSB of a value other than 0, from the exponent of only its lowest bit: no vector instruction
+ * of a CPU does findLSB. */
 uint masu_low_bit(uint bits)
 {
     return (floatBitsToUint(float(bits & (~bits + 1u))) >> 23) - 127u;

@@ -55,8 +55,9 @@
 #define MASU_STORE_SAFE(img, p, v) imageStore(img, ivec2(p), (v))
 #define MASU_STORE_LAYER(img, p, layer, v) imageStore(img, ivec3(ivec2(p), (layer)), (v))
 
-/* v of 0..1 in the bits of A2B10G10R10_UNORM, to the nearest step, alpha 1. Added to 2^23, a number has its
- * integer in its last bits, rounded; what stands before them, 0x4B000000, is shifted out of two of three. */
+/* v of 0..1 in the bits of A2B10G10R10_UNORM, to the nearest step, alpha 1. Added to 2^23, a number
+ * has its rounded integer in its last bits; the bits above, 0x4B000000, are shifted out of two of
+ * three. */
 uint masu_ten_bits(vec3 v)
 {
 #ifdef MASU_EXACT

@@ -1,8 +1,8 @@
 /*
  * rcas.glsl: the arithmetic of FSR1's contrast-adaptive sharpening (AMD, ffx_fsr1 v1.0.2), with a
- * true reciprocal at the end: AMD's approximate one loses 0.32 % of a constant image. The scalar judge is
- * tests/reference/fsr1.c. MASU_EXACT (debug.exact): divisions and order as in that judge, so that all
- * drivers agree exactly.
+ * true reciprocal at the end: AMD's approximate one loses 0.32 % of a constant image. The scalar
+ * judge is tests/reference/fsr1.c. MASU_EXACT (debug.exact): divisions and order as in that judge,
+ * so that all drivers agree exactly.
  */
 #ifndef MASU_RCAS_GLSL
 #define MASU_RCAS_GLSL
