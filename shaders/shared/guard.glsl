@@ -100,7 +100,7 @@ float masu_rsqrt_sure(float x)
     return inversesqrt(x);
 }
 
-/* log2(x) for x from 1e-30; smaller, negative and non-finite operands count as 1e-30 (-99.66). */
+/* log2(x) for x from 1e-30; smaller, negative and non-finite operands become 1e-30 (-99.66). */
 float masu_log2(float x)
 {
     return log2(max(masu_finite(x) ? x : 0.0, masu_tiny));
@@ -112,9 +112,9 @@ float masu_exp2(float x)
     return exp2(masu_sane(x, -126.0, 126.0));
 }
 
-/* x^y for a base that means "at least 0": other bases (negative, NaN, Inf) count as 0, and so does
+/* x^y for a base that means "at least 0": other bases (negative, NaN, Inf) become 0, and so does
  * anything below 1e-30. 0^y = 0 for y other than 0: no light rather than infinite light. x^0 = 1.
- * The result stays within 2^+-126. */
+ * The result is within 2^+-126. */
 float masu_pow(float x, float y)
 {
     float exponent = masu_finite(y) ? y : 0.0;
@@ -140,7 +140,7 @@ float masu_acos(float x)
 
 /* atan(y, x); 0 at the origin and where an operand is not finite. Both are first divided by the
  * larger one, since a quotient of huge or of tiny operands could overflow inside the function; and
- * y loses its sign, since a driver returns pi for atan(-0.0, 1.0). A y of -0 counts as 0. */
+ * y loses its sign, since a driver returns pi for atan(-0.0, 1.0). A y of -0 becomes 0. */
 float masu_atan2(float y, float x)
 {
     float largest = max(abs(x), abs(y));

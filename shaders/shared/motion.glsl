@@ -1,14 +1,14 @@
 /*
- * motion.glsl: the velocity of a surface point, as the image `velocity` holds it (for rung.temporal specular_composite.comp
- * puts that of what a mirror shows in its place):
+ * motion.glsl: the velocity of a surface point, in the format of the image `velocity` (for rung.temporal
+ * specular_composite.comp replaces it on mirrors by the velocity of the reflection):
  *
  *   x, y  previous position minus present one, pixels of this frame's render size, y down
  *   z     previous view depth / present one, minus 1; 0 for the sky
- *   w     1; 0 (and all else 0): the point was behind the camera, or cannot be told
+ *   w     1; 0 (and all else 0): the point was behind the camera, or its motion is unavailable
  *
  * so that previous = present + velocity. Both positions are projected by the same operations, and
- * what did not move has a velocity of exactly 0. The difference of the two, and not "previous minus
- * pixel centre": a rasteriser that snaps vertices to a grid shows a point beside the pixel's centre.
+ * a static point has a velocity of exactly 0. The difference of the two, and not "previous minus
+ * pixel centre": a rasteriser that snaps vertices to a grid shows a point next to the pixel's centre.
  * Needs globals.glsl before it.
  */
 #ifndef MASU_MOTION_GLSL

@@ -6,7 +6,7 @@
  *   filmic   K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic Tone
  *            Mapping Curve", 2016). It reaches 1 near x = 8.1 and would run past it
  *   neutral  Khronos PBR Neutral (Khronos 2024, E. Lalish): the reflection of 0.04 that every
- *            dielectric adds is taken off; what then is below 0.76 of the most stays what it is; above,
+ *            dielectric adds is taken off; the rest is unchanged below 0.76 of the most; above,
  *            the largest channel bends towards the most, and the others go towards it as it bends. With
  *            a display that goes beyond white, "the most" is that of the display
  */
