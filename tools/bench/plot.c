@@ -68,9 +68,18 @@ static bool write_label(FILE *f, masu_labels *labels, const double at[2], const 
     return true;
 }
 
-/* Numbers of the rungs, which avoid the rings around them. Returns how many have room. */
+/* Numbers of the rungs, beside their rings and the front. Returns how many have room. */
 static uint32_t write_numbers(FILE *f, const masu_plot *p, masu_labels *labels) {
     uint32_t count = 0;
+    for (uint32_t k = 1; k < p->front_count; k++) {
+        const uint32_t a = p->front[k - 1], b = p->front[k];
+        for (int step = 1; step < 12; step++) {
+            const double part = step / 12.0, error = shown_error(&p->rows[a]);
+            const double at[2] = {p->ratios[a] * pow(p->ratios[b] / p->ratios[a], part),
+                                  error * pow(shown_error(&p->rows[b]) / error, part)};
+            masu_labels_mark(labels, at, 2);
+        }
+    }
     for (uint32_t r = 0; r < p->rung_count; r++) {
         const uint32_t i = p->rungs[r];
         masu_labels_mark(labels, (const double[]){p->ratios[i], shown_error(&p->rows[i])}, 6);
