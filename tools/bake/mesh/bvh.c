@@ -78,8 +78,8 @@ static const float *position(const baker *b, uint32_t vertex) {
     return MASU_BAKE_VERTICES(b->content)[vertex].position;
 }
 
-/* In double precision, differences of floats of similar size are exact. The area left out by
- * rounding is negligible. */
+/* In double precision, differences of floats of similar size are exact. A triangle that is flat
+ * after rounding has a negligible area. */
 static bool has_area(const float *a, const float *b, const float *c) {
     masu_bake_vec3 n = masu_bake_cross(masu_bake_sub(masu_bake_v3f(b), masu_bake_v3f(a)),
                                        masu_bake_sub(masu_bake_v3f(c), masu_bake_v3f(a)));
