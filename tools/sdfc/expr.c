@@ -1,7 +1,7 @@
-/* expr.c: expressions of constants, parameters and time. An expression is an index into a list
- * in which operands come before what uses them, so evaluating all of them is one pass, and printing
- * the ones that are needed is another: nothing recurs. Every one carries the interval of its values
- * over all parameters and times. */
+/* expr.c: expressions of constants, parameters and time. An expression is an index into a list in
+ * which operands precede their users. So one pass evaluates all of them, another prints those that
+ * are needed, and no function is recursive. Every expression has the interval of its values over
+ * all parameters and times. */
 #include "sdfc/internal.h"
 
 #include <string.h>
