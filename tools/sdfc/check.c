@@ -1,12 +1,12 @@
 /* check.c: tests the results of the analysis in double precision, on points from a fixed seed: the
  * same text always has the same result.
  *
- *   constant   |f(p) - f(q)| <= L |p - q| for distant pairs, close pairs, and pairs on both sides of the
- *              border of two cells of a repetition, found by bisection
+ *   constant   |f(p) - f(q)| <= L |p - q| for distant pairs, close pairs, and pairs on both sides of
+ *              the border of two cells of a repetition, found by bisection
  *   estimates  (fractals) there is no solid within f / L of a point
  *   bounds     outside the box and the sphere, f is positive and at least growth * distance
- *   mirrors    a shape in mirrored sectors (polar) equals its mirror image: a wrongly mirrored field is
- *              a valid field, but of another shape
+ *   mirrors    a shape in mirrored sectors (polar) equals its mirror image: a wrongly mirrored
+ *              field is a valid field, but of another shape
  *
  * Parameters are first at their defaults, then anywhere in their ranges; the same for time. A
  * violation is an error of the analysis (or of a measured constant), and fails the compilation. */

@@ -192,7 +192,8 @@ typedef struct sdfc_term {
     /* instead of a bit: evaluated where its other operand exceeds this argument (~operand) */
     int cap;
     bool opens;      /* the first of its join */
-    bool far; /* if skipped, it counts as infinitely far, instead of skipping the other operand */
+    bool far; /* if skipped, its value is an infinite distance, instead of the join keeping its
+               * previous value */
     bool most;       /* the join takes the larger value */
     double lipschitz; /* of the term and of the other operand, per metre in world space */
 } sdfc_term;
