@@ -270,8 +270,8 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     s->extra[11] = fmin(others * f->growth, 1e30);
 }
 
-/* The half-angle around +x of the wedge that has its edge on the y axis and contains the box; pi:
- * the box contains points on -x. */
+/* The half-angle around +x of the wedge that has its edge on the y axis and contains these bounds;
+ * pi: they contain points on -x. */
 static double angle_of_box(const sdfc_box *b) {
     double most = 0;
     if (b->low[2] <= 0 && b->high[2] >= 0 && b->low[0] <= 0) return PI;
@@ -417,7 +417,7 @@ static void twist_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     sdfc_sphere_of_box(f);
 }
 
-/* The bounds of a box, x within +-x, that is bent by k. For a single k they follow from the corners
+/* The bounds of a bent box, x within +-x, curvature k. For a single k they follow from the corners
  * and the ends of the arc, for an interval from the length of the arc. */
 static void bend_box(sdfc_box *b, double x, double low, double high) {
     double most = fmax(fabs(low), fabs(high)), thick = sdfc_corner(b, 1);

@@ -1,8 +1,8 @@
 /* check.c: tests the results of the analysis in double precision, on points from a fixed seed: the
  * same text always has the same result.
  *
- *   constant   |f(p) - f(q)| <= L |p - q| for distant pairs, close pairs, and pairs on both sides of
- *              the border of two cells of a repetition, found by bisection
+ *   constant   |f(p) - f(q)| <= L |p - q| for distant pairs, close pairs, and pairs on both sides
+ *              of the border of two cells of a repetition, found by bisection
  *   estimates  (fractals) there is no solid within f / L of a point
  *   bounds     outside the box and the sphere, f is positive and at least growth * distance
  *   mirrors    a shape in mirrored sectors (polar) equals its mirror image: a wrongly mirrored

@@ -62,7 +62,7 @@ static bool inside(const solid *s, vec3 p) {
     return fabs(masu_bake_winding(s->triangles, s->count, p)) > 0.5;
 }
 
-/* Corners as rounded in the blob: the test must cover the box that is drawn. */
+/* Corners as rounded in the blob, because the renderer draws those. */
 static masu_bake_box rounded(const masu_bake_box *b) {
     return (masu_bake_box){
         {(double)(float)b->low.x, (double)(float)b->low.y, (double)(float)b->low.z},
