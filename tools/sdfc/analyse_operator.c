@@ -417,8 +417,8 @@ static void twist_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     sdfc_sphere_of_box(f);
 }
 
-/* The bounds of a bent box, x within +-x, curvature k. For a single k they follow from the corners
- * and the ends of the arc, for an interval from the length of the arc. */
+/* The bounds of a curved box, x within +-x, curvature k. For a single k they follow from the
+ * corners and the ends of the arc, for an interval from the length of the arc. */
 static void bend_box(sdfc_box *b, double x, double low, double high) {
     double most = fmax(fabs(low), fabs(high)), thick = sdfc_corner(b, 1);
     double y[2] = {b->low[1], b->high[1]}, reach = x * (1 + most * thick);

@@ -1,7 +1,7 @@
 /* creases.c: computes normals for triangles that have none; see creases.h.
  *
- * Sorting finds corners with bit-identical positions. Shared vertices carry no information: some
- * formats share all of them, others none. The normal of a corner is the sum of the normals of the
+ * Sorting finds corners with identical position bits. Shared vertices carry no information: some
+ * formats share all vertices, others none. The normal of a corner is the sum of the normals of the
  * surrounding faces within the crease angle of its own face, weighted by their angles at the corner
  * (Thuermer and Wuethrich 1998: no other weight is independent of how a polygon was triangulated).
  * The importer's own function is not used: it assumes that no vertex is shared, and gives a cube of

@@ -8,9 +8,9 @@
 
 #define MASU_BAKE_DROP_CELLS 256 /* along each side of the bounds */
 
-/* Height of the piece above its resting position, for this placement. It rests on the surfaces
+/* Height of the piece above its resting position, for this placement. It falls on the surfaces
  * already in `scene`, or on the infinite plane y = ground. Surfaces above the centre of its bounds
- * count as above the piece, not below it. Negative: the piece must be raised. 0 for a piece without
+ * are above the piece, not below it. Negative: the piece must be raised. 0 for a piece without
  * geometry. */
 double masu_bake_drop(const masu_bake_content *scene, const masu_bake_content *piece,
                       const masu_bake_affine *placement, double ground);
