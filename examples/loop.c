@@ -93,17 +93,15 @@ static bool draw(view *v, const char *picture, bool *outdated) {
     masu_commands commands;
     masu_detail detail;
     VkResult got = window_begin(w, slot, &image); /* waits until the slot is free */
-    *outdated = got == VK_ERROR_OUT_OF_DATE_KHR;
-    if (got) return *outdated;
+    if (got) return *outdated = got == VK_ERROR_OUT_OF_DATE_KHR;
     if (w->submit_ns[slot]) masu_frame_times(v->m, slot, w->submit_ns[slot], w->done_ns[slot], 0);
     masu_frame_desc frame = {MASU_FRAME_DESC, .time = SDL_GetTicks() / 1e3, .rung = MASU_RUNG_AUTO,
                              .target = image};
     if (masu_frame(v->m, &frame, &commands, &detail)) return failed(&detail);
-    overlay_line line = {8, 8, 2, ""};
-    snprintf(line.text, sizeof line.text, "%uX%u  RUNG %u", w->size.width, w->size.height,
-             commands.rung);
+    overlay_line l = {8, 8, 2, ""};
+    snprintf(l.text, sizeof l.text, "%uX%u  RUNG %u", w->size.width, w->size.height, commands.rung);
     v->frame++, v->frames++, v->rungs |= 1u << commands.rung;
-    if (!overlay_record(&v->overlay, slot, image, &line, 1, picture[0])) return false;
+    if (!overlay_record(&v->overlay, slot, image, &l, 1, picture[0])) return false;
     got = window_end(w, slot, image, (VkCommandBuffer[2]){commands.buffer, w->commands[slot]}, 2);
     *outdated = got == VK_ERROR_OUT_OF_DATE_KHR || got == VK_SUBOPTIMAL_KHR;
     return (got >= 0 || *outdated) && (!picture[0] || overlay_save(&v->overlay, picture));
@@ -123,9 +121,8 @@ int main(int argc, char **argv) {
     static view v;
     bool quit = false, outdated = false;
     if (argc != 2 && argc != 3) return fprintf(stderr, "usage: loop SCENE.masu [SCRIPT]\n"), 2;
-    const char *wish = getenv("LOOP_SURFACE");
-    v.window.srgb = wish && strstr(wish, "srgb"),
-    v.window.unpaced = wish && strstr(wish, "unpaced");
+    const char *wish = getenv("LOOP_SURFACE") ? getenv("LOOP_SURFACE") : "";
+    v.window.srgb = strstr(wish, "srgb"), v.window.unpaced = strstr(wish, "unpaced");
     bool good = script_open(&v.script, argv[2]) && read_scene(&v, argv[1]) &&
                 window_open(&v.window, "Masu: loop", 640, 360, v.script.text) &&
                 overlay_open(&v.overlay, &v.window) && build(&v);
@@ -133,17 +130,15 @@ int main(int argc, char **argv) {
         char picture[256] = "";
         good = follow_script(&v, v.frames, picture, &quit);
         for (SDL_Event e; SDL_PollEvent(&e);) {
-            quit = quit || e.type == SDL_QUIT ||
-                   (e.type == SDL_KEYDOWN && e.key.keysym.sym == SDLK_ESCAPE);
-            outdated = outdated || (e.type == SDL_WINDOWEVENT &&
-                                    e.window.event == SDL_WINDOWEVENT_SIZE_CHANGED);
+            if (e.type == SDL_QUIT) quit = true;
+            if (e.type == SDL_KEYDOWN && e.key.keysym.sym == SDLK_ESCAPE) quit = true;
+            outdated |= e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_SIZE_CHANGED;
         }
         if (good && outdated) good = follow_window(&v, &outdated);
         if (good && !outdated && !quit) good = draw(&v, picture, &outdated);
     }
-    if (v.m)
-        printf("frames %u rungs 0x%02x resizes %d inits %d format %d validation %d\n", v.frames,
-               v.rungs, v.resizes, v.inits, (int)v.window.format, v.window.messages);
+    if (v.m) printf("frames %u rungs 0x%02x resizes %d inits %d format %d validation %d\n",
+                    v.frames, v.rungs, v.resizes, v.inits, (int)v.window.format, v.window.messages);
     if (v.window.device) vkDeviceWaitIdle(v.window.device);
     masu_destroy(v.m);
     overlay_close(&v.overlay);

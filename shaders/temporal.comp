@@ -27,7 +27,8 @@
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display colour */
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* square roots of
+                                                                         * display-linear colour */
 
 void main()
 {

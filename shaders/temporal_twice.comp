@@ -23,7 +23,8 @@
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display colour */
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* square roots of
+                                                                         * display-linear colour */
 
 vec3 light_at(ivec2 texel)
 {
@@ -50,7 +51,8 @@ void resolve(cell c, ivec2 way)
     uvec2 found = texelFetch(found_image, texel, 0).xy;
     vec4 column = frame.columns[way.x], row = frame.rows[way.y];
     vec2 f = vec2(column.x, row.x);
-    vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* < 0: clamped */
+    vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* < 0: the sampler
+                                                                           * clamps */
     masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
@@ -64,7 +66,10 @@ void resolve(cell c, ivec2 way)
     sum += weights.y * c.light[1];
     sum += weights.z * c.light[2];
     sum += weights.w * c.light[3];
-    if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* not -1 */
+    if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* -1, before the
+                                                                               * first pixel, is
+                                                                               * outside as a
+                                                                               * uint */
         vec3 mean = sum * (1.0 / max(count, 1.0));
         uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
         masu_show(at, mean, count, old, stays, c.chance + other);

@@ -1,8 +1,8 @@
 /* car.c: see race.h.
  *
- * A car is a point with a heading. The steering requests a yaw rate, which is limited by the
- * tyres' grip. The tyres reduce the sideways velocity gradually: this delay is the slip. Grass
- * has less grip and more drag. The constants are tuned by feel and model no real car. */
+ * A car is a point with a heading. The steering requests a yaw rate, limited by the tyres' grip.
+ * The tyres reduce the sideways velocity gradually: this delay is the slip. Grass has less grip
+ * and more drag. The constants are tuned by feel and model no real car. */
 #include "race.h"
 
 #include <string.h>
@@ -38,8 +38,7 @@ static void settle(const track *t, car *c, int near) {
 }
 
 /* The camera approaches its position behind the car by a share of the remaining distance that
- * does not depend on the step; it remains above the ground and inside the barriers. dt 0: at
- * once. */
+ * does not depend on the step, above the ground and inside the barriers. dt 0: at once. */
 static void chase(race *r, double dt) {
     const car *c = &r->cars[0];
     double share = dt > 0 ? 1 - exp(-FOLLOW * dt) : 1;
@@ -109,8 +108,7 @@ static void drive(car *c, const car_input *in, double dt) {
     c->at = add(c->at, c->velocity, dt);
 }
 
-/* Moves the car out of an obstacle by `metres`; `back` is the restitution of the normal
- * velocity. */
+/* Moves the car out of an obstacle. back: restitution of the normal velocity. */
 static void push(car *c, vec out, double metres, double into, double back) {
     c->at = add(c->at, out, metres);
     if (into > 0) c->velocity = add(c->velocity, out, (1 + back) * into);

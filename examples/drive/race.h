@@ -68,8 +68,7 @@ typedef struct track_place {
 
 /* False, with one line on stderr: it is not such a file, or has more than fits. */
 bool track_read(track *t, const char *path);
-/* The track point nearest to `at`. near: the index of the last result, to search near it; -1:
- * search all. */
+/* The track point nearest to `at`. near: index of the last result, to search near it; -1: all. */
 track_place track_find(const track *t, vec at, int near);
 track_place track_along(const track *t, double along, double side);
 

@@ -1,9 +1,8 @@
 /* render.c: see render.h.
  *
  * Memory: one static block of host memory, and one block of device memory for each role, large
- * enough for the largest supported window. masu_memory_query returns a plan's requirements; a
- * plan that does not fit is rejected before anything is created. On unified memory the first
- * role holds everything. */
+ * enough for the largest window. masu_memory_query returns a plan's requirements; a plan that
+ * does not fit is rejected before anything is created. On unified memory the first role is all. */
 #include "render.h"
 
 #include <stdio.h>

@@ -1,16 +1,18 @@
 /*
- * ray.glsl: the rays of live probes (shared/bounce.h), and what a buffer holds of each, twice 16 bytes.
+ * ray.glsl: the rays of live probes (shared/bounce.h), and their 32 bytes in a buffer:
  *
- *   between tracing and shading   what it has met, as an image of reflections holds it (specular/ray.glsl);
- *                                 the other half is unused
- *   from shading on   xyz the point that was met, world space minus the anchor of what is traced, w how far
- *                     its light is, or below 0 where that does not arrive; then as halves the radiance without
- *                     that light, and what it adds; then the direction towards it, octahedral
+ *   between tracing and shading   the hit in the format of reflections (specular/ray.glsl); the
+ *                                 other half is unused
+ *   from shading on   xyz hit point in world space minus the anchor of the traced scene, w distance
+ *                     to the sampled light, below 0 if unlit; then as half floats the radiance
+ *                     without that light, and its addition; then the direction towards it,
+ * octahedral
  *
- * The directions of all sets of a probe are a spherical Fibonacci lattice (Swinbank and Purser 2006), turned by a
- * hash of the probe: so a scene at rest gives the same bits again, and neighbours do not err alike. A lattice at
- * half the distance is four copies of itself, shifted by halves of its two steps: each set is a sixteenth of the
- * lattice and evenly spread, and so are the first four together.
+ * The directions of all sets of a probe are a spherical Fibonacci lattice (Swinbank and Purser
+ * 2006), rotated by a hash of the probe: so a static scene gives the same bits again, and errors of
+ * neighbours are uncorrelated. A lattice at half the distance is four copies of itself, shifted by
+ * halves of its two steps: each set is a sixteenth of the lattice and evenly distributed, and so
+ * are the first four together.
  */
 #ifndef MASU_BOUNCE_RAY_GLSL
 #define MASU_BOUNCE_RAY_GLSL
@@ -57,8 +59,9 @@ uvec3 masu_bounce_hash(uvec3 v)
 
 float masu_bounce_unit(uint hash) { return float(hash >> 8) * (1.0 / 16777216.0); }
 
-/* Turned by an even quaternion (Shoemake 1992). The lattice's steps are (1, golden ratio) and (0, 1), in rays and
- * turns; a set is shifted by quarters of them. */
+/* Direction of a ray, rotated by a uniform random quaternion (Shoemake 1992). The lattice's steps
+ * are (1, golden ratio) and (0, 1), in rays and rotations; a set is shifted by quarters of a
+ * step. */
 vec3 masu_bounce_direction(masu_bounce_ray r)
 {
     uvec3 h = masu_bounce_hash(uvec3(r.probe, 0u, 0x6D617375u));

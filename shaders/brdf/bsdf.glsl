@@ -3,11 +3,11 @@
  *
  *   f = coat + through(v, l) * specular + rest + diffuse
  *
- *   specular  GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014), alpha = roughness^2,
- *             Schlick's Fresnel term from f0 to f90
- *   rest      multiple scattering between facets, which the lobe lacks: the product of its losses for
- *             v and for l (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks",
- *             2017)
+ *   specular  GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014), alpha =
+ *             roughness^2, Schlick's Fresnel term from f0 to f90
+ *   rest      multiple scattering between facets, which the lobe lacks: the product of its losses
+ *             for v and for l (Kulla and Conty, "Revisiting Physically Based Shading at
+ *             Imageworks", 2017)
  *   diffuse   receives the remaining energy: the product of the remainders for v and for l (Kelemen
  *             and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001)
  *   coat      the same lobe with f0 = 0.04; only with MASU_SURFACE
@@ -35,12 +35,13 @@
  * metals 0.83 to 1.02 (tests/unit/test_brdf.c).
  *
  * Lobes of masu_extra_lobes, one a surface:
- *   colour  f0 of any colour and strength; what lies below gets what the brightest channel leaves
- *   sheen   Charlie's distribution and masking (Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017) by
- *           their fits; what lies below is scaled by the lesser of 1 - E(v), 1 - E(l) (KHR_materials_sheen). E by a fit
- *           to its integral: RMS 0.013, worst 0.05 at a cosine of 0.02
- *   grain   GGX with two alphas (Heitz 2014); albedos are those of the root mean square of both. Light looked up around
- *           the mirror direction is a mean over normals that lean along the grain (masu_fan, shade.glsl)
+ *   colour  f0 of any colour and strength; lower layers get the light left by the brightest channel
+ *   sheen   Charlie's distribution and masking (Estevez and Kulla, "Production Friendly Microfacet
+ *           Sheen BRDF", 2017) by their fits; lower layers are scaled by the lesser of 1 - E(v), 1
+ *           - E(l) (KHR_materials_sheen). E by a fit to its integral: RMS 0.013, worst 0.05 at a
+ *   cosine of 0.02 grain   GGX with two alphas (Heitz 2014); albedos are those of the root mean
+ *           square of both. Light looked up around the mirror direction is a mean over normals that
+ * lean along the grain (masu_fan, shade.glsl)
  *
  * All in fp32, finite for any bit pattern.
  */
@@ -72,8 +73,8 @@ struct masu_bsdf {
     float matte_slope; /* f90 - f0, */
     float matte_rest;  /* factor of its `rest` */
     masu_albedo seen;  /* of v */
-    vec3 rest;         /* what `rest` is to be multiplied by, of l; times pi */
-    vec3 diffuse;      /* the same of `diffuse` */
+    vec3 rest;         /* factor of `rest`, for l; times pi */
+    vec3 diffuse;      /* factor of `diffuse`, for l; times pi */
     vec3 ambient;      /* of irradiance / pi */
 #ifdef MASU_SURFACE
     float coat;
@@ -148,7 +149,7 @@ masu_albedo masu_albedo_of(masu_bsdf b, float cosine, float over)
 }
 
 /* Colour of multiple scattering, as a factor of the lost energy (Kulla and Conty). lost: the mean
- * loss. With the square of f alone (Hill, "A Multi-Faceted Exploration", part 4, 2018), metals of f
+ * loss. With only the square of f (Hill, "A Multi-Faceted Exploration", part 4, 2018), metals of f
  * 0.5 are up to 8 % darker than random walks between facets. The second factor, which is 1 at f =
  * 1, halves this error. */
 vec3 masu_rest_color(vec3 f0, float f90, float lost)
@@ -157,8 +158,9 @@ vec3 masu_rest_color(vec3 f0, float f90, float lost)
     return f * f * (1.35 - 0.35 * f) * (1.0 - lost) / (1.0 - f * lost);
 }
 
-/* Colours of a dielectric's reflectance are for the light that it mirrors at once alone: below gets what the brightest
- * channel leaves, which is grey (KHR_materials_specular), and so does light between facets. */
+/* A coloured dielectric reflectance affects only single scattering: the diffuse layer gets the
+ * light left by the brightest channel, which is grey (KHR_materials_specular), and so does multiple
+ * scattering. */
 float masu_most_specular()
 {
 #ifdef MASU_SURFACE

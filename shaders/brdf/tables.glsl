@@ -1,7 +1,8 @@
 /*
- * tables.glsl: directional albedos of the specular lobe, looked up. tools/generate/make_split_sum.c has made the
- * table; masu_shared.h says how it lies in its buffer, which is resident and the same for all scenes that
- * are lit. Interpolated by hand: a buffer needs no sampler, and all drivers round alike.
+ * tables.glsl: lookups of directional albedos of the specular lobe. tools/generate/make_split_sum.c
+ * generates the table; shared/lookup_tables.h has the layout of its buffer, which is resident and
+ * the same for all lit scenes. Interpolated in the shader: a buffer needs no sampler, and all
+ * drivers round alike.
  */
 #ifndef MASU_TABLES_GLSL
 #define MASU_TABLES_GLSL
@@ -15,7 +16,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TABLES, std430) readonly buffe
     uint masu_tables[];
 };
 
-/* The row of a roughness of 0..1; from 0 to TABLE_SMOOTHEST all is one. */
+/* The row of a roughness of 0..1; from 0 to TABLE_SMOOTHEST all share one. */
 uint masu_row_of(float roughness)
 {
     const float scale = float(MASU_TABLE_ROWS - 1) / (1.0 - MASU_TABLE_SMOOTHEST);

@@ -7,9 +7,9 @@
  * Weights of the eight, multiplied:
  *   trilinear, for the point moved off its surface by the grid's bias
  *   1 in front of the surface's plane, falling to 0 at the grid's bias behind it: such a probe
- *     receives light that cannot reach the point. A cosine would favour distant probes over close ones
- *   visibility: Chebyshev's bound from the mean and mean square of distances from the probe in that
- *     direction (Donnelly and Lauritzen 2006; Majercik et al., JCGT 8-2, 2019)
+ *     receives light that cannot reach the point. A cosine would favour distant probes over close
+ *   ones visibility: Chebyshev's bound from the mean and mean square of distances from the probe in
+ *     that direction (Donnelly and Lauritzen 2006; Majercik et al., JCGT 8-2, 2019)
  *   0 for probes inside solids
  * None is exactly 0, so the sum is a valid divisor.
  *

@@ -42,7 +42,7 @@ vec3 masu_graded(vec3 y, float peak)
     return peak * vec3(masu_srgb_decode(v.r), masu_srgb_decode(v.g), masu_srgb_decode(v.b));
 }
 
-/* What the lens leaves of the light of a pixel. */
+/* Vignette factor of a pixel. */
 float masu_vignette(vec2 at, vec2 size)
 {
     vec2 side = (at + 0.5) / size * 2.0 - 1.0;

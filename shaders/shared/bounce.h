@@ -10,9 +10,9 @@
 #define MASU_BOUNCE_RAY_BYTES 32u /* see shaders/bounce/ray.glsl */
 #define MASU_BOUNCE_EMISSION 64.0 /* most radiance that a ray takes from an emissive surface */
 
-/* Head of the buffer: the groups of both indirect dispatches, over rays and over probes; their w: how
- * many rays there are, and how many of each probe. Then a word per probe: its number; from bit 20 on
- * which of its sets; from bit 24 on how many of them count, with this one. */
+/* Head of the buffer: the groups of both indirect dispatches, over rays and over probes; their w:
+ * the number of rays, and the number of rays per probe. Then a 32-bit value per probe: its number;
+ * from bit 20 on its present set; from bit 24 on the number of valid sets, including this one. */
 struct masu_bounce_header {
     masu_uvec4 rays;
     masu_uvec4 probes;

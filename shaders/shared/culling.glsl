@@ -1,6 +1,7 @@
 /*
- * culling.glsl: what the host writes for occlusion culling, in the buffer of drawn instances behind
- * the lists of stage 1. masu_shared.h names the words of its header; src/frame/occlusion.c writes them.
+ * culling.glsl: the host's data for occlusion culling, in the buffer of drawn instances after the
+ * lists of stage 1. shared/culling.h names the fields of its header; src/frame/occlusion.c writes
+ * them.
  */
 #ifndef MASU_CULLING_GLSL
 #define MASU_CULLING_GLSL
@@ -17,7 +18,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) MASU_DRAWN_ACCE
     uint drawn[];
 };
 
-/* A word of the header; push.header is where that begins. */
+/* A value of the header, which begins at push.header. */
 uint masu_cull_word(uint i)
 {
     return drawn[push.header + i];
@@ -38,7 +39,7 @@ vec4 masu_drawn_vec4(uint at)
     return vec4(masu_drawn_vec3(at), masu_drawn_float(at + 3u));
 }
 
-/* Where the numbers of a view begin. */
+/* Offset of the data of a view. */
 uint masu_cull_view(uint view)
 {
     return push.header + MASU_CULL_HEADER + view * MASU_CULL_VIEW_WORDS;

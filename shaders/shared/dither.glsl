@@ -6,7 +6,8 @@
 #ifndef MASU_DITHER_GLSL
 #define MASU_DITHER_GLSL
 
-/* Of red, green and blue, a third apart: what one channel has too much, the others have too little. */
+/* For red, green and blue, a third apart: a positive error of one channel is offset by the
+ * others. */
 uvec3 masu_dither(uvec2 at)
 {
     uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + frame.history.x * 0x9E3779B9u;

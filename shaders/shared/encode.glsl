@@ -1,6 +1,6 @@
 /*
- * encode.glsl: display light, of which 1 is white, as the target of a scene encodes it. After output.glsl with
- * MASU_OUTPUT.
+ * encode.glsl: encodes display-linear colour, white at 1, for the target of a scene. After
+ * output.glsl with MASU_OUTPUT.
  */
 #ifndef MASU_ENCODE_GLSL
 #define MASU_ENCODE_GLSL
@@ -17,7 +17,8 @@ vec3 masu_encoded(vec3 y, float white)
     return vec3(masu_pq_encode(nits.r), masu_pq_encode(nits.g), masu_pq_encode(nits.b));
 }
 
-/* The same of light times peak, for a store that clamps: what is below 0 or above 1 stays that. */
+/* masu_encoded() of light times peak, for a store that clamps: values below 0 or above 1 remain
+ * outside. */
 vec3 masu_encoded_open(vec3 y, float peak, float white)
 {
     if (masu_encoding == MASU_OUTPUT_SRGB) {

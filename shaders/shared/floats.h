@@ -1,7 +1,8 @@
-/* floats.h: floats are computed as floats, and doubles as doubles. The coprocessor of old x86 computes both in
- * more digits and rounds where the compiler happens to store: tables come out wrong, and nothing is the same to
- * the bit on two machines. C alone: masu_shared.h includes it for the library and the generators. (16 is what
- * compilers call it where halves, too, are computed as halves.) */
+/* floats.h: requires that floats are computed as floats, and doubles as doubles. The x87
+ * coprocessor computes both with more digits and rounds at arbitrary stores: tables would be wrong,
+ * and results would differ between machines. Only for C: masu_shared.h includes it for the library
+ * and the generators. (16 is the value of compilers that also compute half floats as half
+ * floats.) */
 #ifndef MASU_FLOATS_H
 #define MASU_FLOATS_H
 

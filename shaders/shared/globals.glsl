@@ -1,7 +1,7 @@
 /*
- * globals.glsl: descriptor set 0, and what every pass of a scene derives from it: the camera ray of
- * a pixel and the counters. A shader that counts says so by the constant below; with counters off
- * the atomics are compiled away.
+ * globals.glsl: descriptor set 0, and values that every pass of a scene derives from it: the camera
+ * ray of a pixel and the counters. A shader that counts declares this by the constant below; with
+ * counters off the atomics are compiled away.
  */
 #ifndef MASU_GLOBALS_GLSL
 #define MASU_GLOBALS_GLSL
@@ -15,23 +15,24 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame
 
 #include "shared/push.glsl"
 
-/* Where a place in the picture, in pixels, lies between the sides of the unshifted one, -1 and 1: what the
- * camera's vectors are to be weighted with. Every ray starts with it; what is drawn gets the same shift
- * by clip_from_rel. */
+/* Normalised device coordinates, -1 to 1, of an image position in pixels, in the image without
+ * jitter: the weights of the camera's vectors. Every ray starts with it; rasterised geometry gets
+ * the same shift by clip_from_rel. */
 vec2 masu_ndc(vec2 pixels, vec2 size)
 {
     return pixels / size * 2.0 - 1.0 + frame.jitter.xy;
 }
 
-/* Vector from the eye through a place in the picture, pixels, as long as makes its view z 1: eye + ray * z is the point at view
- * depth z. */
+/* Vector from the camera through an image position in pixels, scaled to view z 1: camera + ray * z
+ * is the point at view depth z. */
 vec3 masu_place_ray(vec2 place, uvec2 size)
 {
     vec2 ndc = masu_ndc(place, vec2(size));
     return frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
 }
 
-/* The same through the centre of a pixel. The half texel matters: without it the march and the raster look at different places. */
+/* The ray through the centre of a pixel. The half texel matters: without it the march and the
+ * raster sample different positions. */
 vec3 masu_pixel_ray(uvec2 at, uvec2 size)
 {
     return masu_place_ray(vec2(at) + 0.5, size);

@@ -94,13 +94,13 @@ float masu_rsqrt(float x)
     return usable ? r : 0.0;
 }
 
-/* The same of an x that is known to be within 1e-30..1e30. */
+/* masu_rsqrt() for an x within 1e-30..1e30. */
 float masu_rsqrt_sure(float x)
 {
     return inversesqrt(x);
 }
 
-/* log2(x) for x from 1e-30; smaller, negative and non-finite operands count as 1e-30 (-99.66). */
+/* log2(x) for x from 1e-30; smaller, negative and non-finite operands become 1e-30 (-99.66). */
 float masu_log2(float x)
 {
     return log2(max(masu_finite(x) ? x : 0.0, masu_tiny));
@@ -112,9 +112,9 @@ float masu_exp2(float x)
     return exp2(masu_sane(x, -126.0, 126.0));
 }
 
-/* x^y for a base that means "at least 0": other bases (negative, NaN, Inf) count as 0, and so does
+/* x^y for a base that means "at least 0": other bases (negative, NaN, Inf) become 0, and so does
  * anything below 1e-30. 0^y = 0 for y other than 0: no light rather than infinite light. x^0 = 1.
- * The result stays within 2^+-126. */
+ * The result is within 2^+-126. */
 float masu_pow(float x, float y)
 {
     float exponent = masu_finite(y) ? y : 0.0;
@@ -125,7 +125,8 @@ float masu_pow(float x, float y)
     return positive ? r : (exponent == 0.0 ? 1.0 : 0.0);
 }
 
-/* x^y of x above 0. Of another x anything, NaN too: for where that is not taken. */
+/* x^y for x above 0. Any other x gives any value, even NaN: only for results that are discarded
+ * then. */
 float masu_pow_above(float x, float y)
 {
     return exp2(log2(x) * y);
@@ -139,7 +140,7 @@ float masu_acos(float x)
 
 /* atan(y, x); 0 at the origin and where an operand is not finite. Both are first divided by the
  * larger one, since a quotient of huge or of tiny operands could overflow inside the function; and
- * y loses its sign, since a driver returns pi for atan(-0.0, 1.0). A y of -0 counts as 0. */
+ * y loses its sign, since a driver returns pi for atan(-0.0, 1.0). A y of -0 becomes 0. */
 float masu_atan2(float y, float x)
 {
     float largest = max(abs(x), abs(y));
@@ -161,8 +162,8 @@ vec3 masu_normalize(vec3 v, vec3 fallback)
     return usable ? u : fallback;
 }
 
-/* findLSB of what is not 0, by the exponent of the lowest bit alone: no vector instruction of a CPU does
- * findLSB. */
+/* findLSB of a value other than 0, from the exponent of only its lowest bit: no vector instruction
+ * of a CPU does findLSB. */
 uint masu_low_bit(uint bits)
 {
     return (floatBitsToUint(float(bits & (~bits + 1u))) >> 23) - 127u;

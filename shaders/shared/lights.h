@@ -21,22 +21,23 @@ struct masu_punctual_light_data {
                            angle; point 1 0 0. Rectangle: half axis v. Capsule: 0 0 0.
                            w bits: kind, 0 point or spot, 1 capsule, 2 rectangle; LIGHT_SHARED */
     masu_vec4 bound;    /* sphere around everything that it lights: xyz, w radius, rounded up */
-    /* Shadow, all 0: none. x y z w, x y: a word for each cube face +x -x +y -y +z -z; z near distance, w 0, as
-     * bits of floats. With only one face, of a spot: x its word; y z w the unit vector across it, of which the
-     * cross product with the axis is the one down; then z near distance, w tangent of half its angle. */
+    /* Shadow, all 0: none. x y z w, x y: a value for each cube face +x -x +y -y +z -z; z near
+     * distance, w 0, as bits of floats. A spot has only one face: x its value; y z w the unit
+     * vector to its right, whose cross product with the axis points down; then z near distance, w
+     * tangent of half its angle. */
     masu_uvec4 shadow[2];
-    masu_vec4 shadow_origin; /* xyz: where its faces were rendered from; a light that moves is ahead of it */
+    masu_vec4 shadow_origin; /* xyz: centre of the rendered faces; lags behind a moving light */
 };
 
-/* A word of a face, 0: nothing there casts a shadow. From the lowest bit on: log2 of the tile's size, 4 bits;
- * how far it is faded in, 0 to LOCAL_FADE, 4; y / 8, 12; x / 8, 12. */
+/* A face as a 32-bit value, 0: no shadow casters. From the lowest bit on: log2 of the tile's size,
+ * 4 bits; its fade-in, 0 to LOCAL_FADE, 4; y / 8, 12; x / 8, 12. */
 #define MASU_LOCAL_FADE 8
 #define MASU_LOCAL_FADE_SHIFT 4
 #define MASU_LOCAL_Y_SHIFT 8
 #define MASU_LOCAL_X_SHIFT 20
 /* Texels beyond the face's edge on each side of a tile, for the filter. */
 #define MASU_LOCAL_GUARD 2
-/* The light is that of a surface of the scene, which rays meet. */
+/* The light is the emission of a surface of the scene, which rays hit. */
 #define MASU_LIGHT_SHARED 4
 
 #endif

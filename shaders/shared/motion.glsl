@@ -1,14 +1,14 @@
 /*
- * motion.glsl: the velocity of a surface point, as the image `velocity` holds it (for rung.temporal specular_composite.comp
- * puts that of what a mirror shows in its place):
+ * motion.glsl: the velocity of a surface point, in the format of the image `velocity` (for rung.temporal
+ * specular_composite.comp replaces it on mirrors by the velocity of the reflection):
  *
  *   x, y  previous position minus present one, pixels of this frame's render size, y down
  *   z     previous view depth / present one, minus 1; 0 for the sky
- *   w     1; 0 (and all else 0): the point was behind the camera, or cannot be told
+ *   w     1; 0 (and all else 0): the point was behind the camera, or its motion is unavailable
  *
  * so that previous = present + velocity. Both positions are projected by the same operations, and
- * what did not move has a velocity of exactly 0. The difference of the two, and not "previous minus
- * pixel centre": a rasteriser that snaps vertices to a grid shows a point beside the pixel's centre.
+ * a static point has a velocity of exactly 0. The difference of the two, and not "previous minus
+ * pixel centre": a rasteriser that snaps vertices to a grid shows a point next to the pixel's centre.
  * Needs globals.glsl before it.
  */
 #ifndef MASU_MOTION_GLSL
@@ -17,7 +17,7 @@
 #include "shared/frame.h"
 #include "shared/guard.glsl"
 
-/* sdf/field.glsl declares it where the field itself needs it. */
+/* sdf/field.glsl declares it if the SDF needs it. */
 #ifndef MASU_FIELD_GLSL
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS, std140) uniform Previous
 {
@@ -31,8 +31,8 @@ vec3 masu_clip(masu_mat4 m, vec4 rel)
     return clip.xyw;
 }
 
-/* rel: the point, seen from the eye; before: where it was, seen from the previous eye. w is 1, or 0
- * of a direction. */
+/* rel: the point relative to the camera; before: the previous point relative to the previous
+ * camera. w is 1, or 0 for a direction. */
 vec4 masu_velocity(vec4 rel, vec4 before, vec2 size)
 {
     vec3 now = masu_clip(frame.clip_from_rel, rel);
@@ -47,8 +47,9 @@ vec4 masu_velocity(vec4 rel, vec4 before, vec2 size)
     return told ? velocity : vec4(0.0);
 }
 
-/* A motion, pixels, without what the frames' jitter differs by: what rests has rested, wherever in its pixel each of
- * them looked. Histories are found so: their texels are means over such places. */
+/* Removes the difference of the frames' jitter from a motion in pixels: a static point gets 0,
+ * wherever the frames sampled its pixel. Used to find histories: their texels are means over such
+ * positions. */
 vec2 masu_unjittered(vec2 moved, vec2 size)
 {
     return moved + (previous.jitter.zw - frame.jitter.zw) * (0.5 * size);

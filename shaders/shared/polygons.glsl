@@ -1,7 +1,7 @@
 /*
- * polygons.glsl: what every vertex shader of placed meshes begins with: which instance it is of, and
- * where that puts the vertex and its normal. A draw's instances are listed from push.instances on in the
- * buffer of drawn instances.
+ * polygons.glsl: the start of every vertex shader of placed meshes: the index of the instance, and
+ * the transforms of the vertex and its normal. A draw's instances are listed from push.instances on
+ * in the buffer of drawn instances.
  */
 #ifndef MASU_POLYGONS_GLSL
 #define MASU_POLYGONS_GLSL
@@ -54,7 +54,7 @@ vec2 masu_moved_texcoord(uint id, vec2 at)
     return at;
 }
 
-/* Relative to an origin given as a float and what that leaves. */
+/* Position relative to an origin that is split into two floats. */
 vec3 masu_point_seen_from(masu_instance_data m, vec3 p, vec3 origin_hi, vec3 origin_lo)
 {
     precise vec3 moved = vec3(dot(m.row0.xyz, p), dot(m.row1.xyz, p), dot(m.row2.xyz, p));
@@ -69,9 +69,9 @@ vec3 masu_seen_from(masu_instance_data m, vec3 origin_hi, vec3 origin_lo)
     return masu_point_seen_from(m, position, origin_hi, origin_lo);
 }
 
-/* Of any length. Normals go by the cofactor matrix: the inverse transpose times the determinant,
- * which needs no division and so stays finite for flattened objects. A mirrored object turns its
- * sign. */
+/* Transformed normal, of any length, by the cofactor matrix: the inverse transpose times the
+ * determinant, which needs no division and so is finite for flattened objects. A mirrored object
+ * flips its sign. */
 vec3 masu_turned_normal(masu_instance_data m)
 {
     vec3 c0 = cross(m.row1.xyz, m.row2.xyz);

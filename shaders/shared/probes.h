@@ -17,8 +17,8 @@
 #define MASU_PROBE_MOST_1 1.25  /* light from a single direction has 1.155 in band 1 */
 #define MASU_PROBE_MOST_2 0.625 /* and 0.559 in band 2 */
 
-/* Behind the light of this frame, where probes are live: of each the mean of what its rays have found, as
- * lit words are; then of each MASU_BOUNCE_SETS partial sums, as sets are. */
+/* With live probes, after the light of this frame: per probe the mean of its rays, in the same
+ * format; then per probe MASU_BOUNCE_SETS partial sums, in the format of sets. */
 
 /* Head of the buffer, masu_blob_probes in src/scene/blob.h. Then, per probe, the coefficients from
  * the blob; then, per probe, the light of this frame. */

@@ -1,9 +1,10 @@
 /*
- * silhouettes.glsl: what a pixel with an edge shows (silhouettes.comp), in a word.
+ * silhouettes.glsl: the colour of a pixel with an SDF edge (silhouettes.comp), as a 32-bit value.
  *
- *   bits 0-9    red, 10-20 green, 21-30 blue: roots of display light, of the most that is shown; 1023, 2047 and 1023 steps
- *   bit 31      it has one
- *   0           it has none
+ *   bits 0-9    red, 10-20 green, 21-30 blue: square roots of display-linear colour relative to the
+ *               highest output; 1023, 2047 and 1023 steps
+ *   bit 31      the pixel has an edge
+ *   0           no edge
  */
 #ifndef MASU_SILHOUETTES_GLSL
 #define MASU_SILHOUETTES_GLSL

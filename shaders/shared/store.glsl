@@ -2,8 +2,8 @@
  * store.glsl: the only way in which a shader writes an image.
  *
  * Each macro drops a store outside the image (also for negative coordinates), replaces NaN and Inf
- * by 0, and clamps to the range of the format, because what a driver does with the rest differs:
- * one of them packs 1e6 into a half as NaN. A bad value therefore lives in one pixel of one pass
+ * by 0, and clamps to the range of the format, because drivers differ for other values:
+ * one packs 1e6 into a half as NaN. A bad value therefore lives in one pixel of one pass
  * and is never kept by a history image.
  *
  *   MASU_STORE_UNORM(img, p, v)   vec4 v to 0..1              rgba8 and its like
@@ -11,9 +11,8 @@
  *   MASU_STORE_R32F(img, p, x)    float x, finite             r32f
  *   MASU_STORE_UINT(img, p, u)    uint or uvec4 u, unchanged  r32ui and its like
  *   MASU_STORE_TEN(img, p, v)     vec3 v to 0..1              r32ui view of an image of 10 bits a channel
- *   MASU_STORE_SAFE(img, p, v)    vec4 v, as it is            what is known to be finite, at a p that is known to
- *                                                             lie within the image: format clamps the rest, but
- *                                                             for masu_ten_bits, which takes 0..1 alone
+ *   MASU_STORE_SAFE(img, p, v)    vec4 v, unchanged           v must be finite, and p inside the image. The format
+ *                                                             clamps v; masu_ten_bits requires 0..1
  *   MASU_STORE_LAYER(img, p, layer, v)                        the same to a layer of an array
  *
  * p is an ivec2 or a uvec2. Each argument is evaluated once. Write a semicolon after the macro and
@@ -32,7 +31,8 @@
 #define MASU_COUNT_REPLACED(n)
 #endif
 
-/* value: v as a `type`, by the name masu_store_value, made into what the image takes. */
+/* value: expression that converts v, available as masu_store_value of type `type`, to the stored
+ * value. */
 #define MASU_STORE_CHECKED(img, p, type, v, value)                                                 \
     {                                                                                              \
         ivec2 masu_store_at = ivec2(p);                                                            \
@@ -55,8 +55,9 @@
 #define MASU_STORE_SAFE(img, p, v) imageStore(img, ivec2(p), (v))
 #define MASU_STORE_LAYER(img, p, layer, v) imageStore(img, ivec3(ivec2(p), (layer)), (v))
 
-/* v of 0..1 in the bits of A2B10G10R10_UNORM, to the nearest step, alpha 1. Added to 2^23, a number has its
- * integer in its last bits, rounded; what stands before them, 0x4B000000, is shifted out of two of three. */
+/* v of 0..1 in the bits of A2B10G10R10_UNORM, to the nearest step, alpha 1. Added to 2^23, a number
+ * has its rounded integer in its last bits; the bits above, 0x4B000000, are shifted out of two of
+ * three. */
 uint masu_ten_bits(vec3 v)
 {
 #ifdef MASU_EXACT

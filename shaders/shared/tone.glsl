@@ -6,7 +6,7 @@
  *   filmic   K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic Tone
  *            Mapping Curve", 2016). It reaches 1 near x = 8.1 and would run past it
  *   neutral  Khronos PBR Neutral (Khronos 2024, E. Lalish): the reflection of 0.04 that every
- *            dielectric adds is taken off; what then is below 0.76 of the most stays what it is; above,
+ *            dielectric adds is taken off; the rest is unchanged below 0.76 of the most; above,
  *            the largest channel bends towards the most, and the others go towards it as it bends. With
  *            a display that goes beyond white, "the most" is that of the display
  */
@@ -19,7 +19,7 @@
 /* Radiance as the curves take it: 1e4 is far past white, and keeps their squares in range. */
 vec3 masu_exposed(vec3 hdr, float exposure)
 {
-    /* Layers that add up to more than a half holds are bright, not broken. */
+    /* Layers whose sum exceeds a half float are bright, not invalid. */
     hdr = mix(hdr, vec3(65504.0), equal(floatBitsToUint(hdr), uvec3(masu_exponent_mask)));
     return masu_sane(hdr * exposure, 0.0, 1e4);
 }
@@ -44,7 +44,7 @@ vec3 masu_tone_neutral(vec3 x, float most)
 
 layout(constant_id = 5) const uint masu_tone = 2;
 
-/* Display light of radiance, by the curve; most: what is shown at most, in whites. */
+/* Display-linear colour of a radiance by the tone curve; most: the highest output, in whites. */
 vec3 masu_shown(vec3 hdr, float exposure, float most)
 {
     vec3 x = masu_exposed(hdr, exposure);
@@ -57,7 +57,7 @@ float masu_srgb_encode(float x)
     return x <= 0.0031308 ? 12.92 * max(x, 0.0) : 1.055 * masu_pow(min(x, 1.0), 1.0 / 2.4) - 0.055;
 }
 
-/* The same of any number, of which what is below 0 stays that and what is above 1 that. */
+/* masu_srgb_encode() of any number; values below 0 or above 1 remain outside. */
 float masu_srgb_encode_open(float x)
 {
     return x <= 0.0031308 ? 12.92 * x : 1.055 * masu_pow_above(x, 1.0 / 2.4) - 0.055;
@@ -96,7 +96,7 @@ vec3 masu_bt2020(vec3 c)
                 dot(vec3(0.0164, 0.0880, 0.8956), c));
 }
 
-/* Of BT.709. */
+/* Luminance of BT.709. */
 float masu_luminance(vec3 c)
 {
     precise float luminance = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;

@@ -1,14 +1,14 @@
 /*
- * unorm.glsl: a fetched colour of 0..1, as EASU and RCAS take it.
+ * unorm.glsl: a fetched colour of 0..1, prepared for EASU and RCAS.
  *
- * The byte c arrives as c/255 rounded, or as c * (1/255) one unit in the last place beside it,
- * depending on the driver; the same goes for 10 bits. Where a filter decides by equality (EASU: do these
- * texels have the same luma?) or ends on a rounding tie (RCAS: quarters of a step are common), that unit
- * becomes up to 33/255, respectively 1/255, of difference from the reference. With MASU_EXACT (debug.exact)
- * both become the same number on every driver; that is two thirds of EASU's operations, so it is for
- * comparing drivers alone.
+ * The byte c is fetched as c/255 rounded, or as c * (1/255) with an error of one unit in the last
+ * bit, depending on the driver; 10 bits likewise. If a filter decides by equality (EASU: do these
+ * texels have the same luma?) or ends on a rounding tie (RCAS: quarters of a step are common), that
+ * unit becomes a difference of up to 33/255, respectively 1/255, from the reference. With
+ * MASU_EXACT (debug.exact) both become the same number on every driver; that is two thirds of
+ * EASU's operations, so it is only for comparing drivers.
  *
- * MASU_BYTES: of an image that can hold nothing but 0..1: there is nothing to guard.
+ * MASU_BYTES: for an image format that only holds 0..1: no guard is needed.
  */
 #ifndef MASU_UNORM_GLSL
 #define MASU_UNORM_GLSL
@@ -16,10 +16,10 @@
 #include "shared/guard.glsl"
 
 #ifdef MASU_EXACT
-/* NaN, Inf and negative numbers as 0, larger ones as 1. What is within rounding of a step of 8 or of 10 bits
- * is moved onto it; steps of both that differ are farther apart by 20 times. Other values stay.
- * c 257/65536 + c/16711680 = c/255, c 1025/1048576 + c/1072693248 = c/1023: the first product is exact, and
- * the sum is right for every c. */
+/* NaN, Inf and negative numbers as 0, larger ones as 1. A value within rounding of a step of 8 or
+ * of 10 bits is moved onto it; steps of the two that differ are farther apart by 20 times. Other
+ * values are unchanged. c 257/65536 + c/16711680 = c/255, c 1025/1048576 + c/1072693248 = c/1023:
+ * the first product is exact, and the sum is right for every c. */
 vec3 masu_fetched_unorm(vec3 fetched)
 {
     vec3 v = masu_sane_unit(fetched);

@@ -1,15 +1,15 @@
 /*
- * color.glsl: what anti-aliasing reads of a picture, and its mixing, which is of light: colours are
- * decoded first. Edges are found in what is shown, which is encoded.
+ * color.glsl: colour conversions of anti-aliasing. It blends linear light, so colours are decoded
+ * first; edges are detected in the encoded output.
  */
 #ifndef MASU_SMAA_COLOR_GLSL
 #define MASU_SMAA_COLOR_GLSL
 
 #include "shared/guard.glsl"
 
-/* Of Rec. 709 times 10000, of a colour in whole steps of 8 bits: up to 2 550 000, a whole number
- * that fp32 holds exactly, so that every driver finds the same edges. Finer steps of a deeper
- * picture make no edge. */
+/* Rec. 709 luma times 10000, of a colour in whole steps of 8 bits: up to 2 550 000, a whole number
+ * that fp32 holds exactly, so that every driver finds the same edges. Finer steps of a deeper image
+ * make no edge. */
 float masu_smaa_luma(vec3 color)
 {
     vec3 steps = roundEven(masu_sane_unit(color) * 255.0);

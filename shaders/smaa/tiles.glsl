@@ -1,9 +1,9 @@
 /*
- * tiles.glsl: the buffer of SMAA: which tiles have edges, and the edges themselves, a bit each.
+ * tiles.glsl: the buffer of SMAA: the list of tiles with edges, and the edges, a bit each.
  *
- * Edges lie as bits, once by rows and once by columns, so that the end of a line is found by
- * counting bits of a word instead of by fetching two pixels at a time. masu_shared.h has the
- * layout.
+ * Edges are stored as bits, once by rows and once by columns, so that the end of a line is found by
+ * counting bits of a 32-bit value instead of by fetching two pixels at a time. shared/smaa.h has
+ * the layout.
  */
 #ifndef MASU_SMAA_TILES_GLSL
 #define MASU_SMAA_TILES_GLSL
@@ -27,7 +27,7 @@ uvec2 masu_smaa_grid()
     return (size + uint(MASU_TILE) - 1u) / uint(MASU_TILE);
 }
 
-/* Where the words of a tile begin. */
+/* Offset of the edges of a tile. */
 uint masu_smaa_words(uvec2 tile, uvec2 grid)
 {
     return uint(MASU_TILES_HEADER) + grid.x * grid.y +

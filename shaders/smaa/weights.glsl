@@ -1,9 +1,9 @@
 /*
- * weights.glsl: SMAA 1x, second step: of a pixel's edges, how much of the pixel lies on their other
- * side (Jimenez et al., "SMAA", Eurographics 2012, sections 4.2 to 4.4). Straight lines along an
- * axis, diagonal ones, corners.
+ * weights.glsl: SMAA 1x, second step: blending weights: for each edge of a pixel, the share of the
+ * pixel beyond the line (Jimenez et al., "SMAA", Eurographics 2012, sections 4.2 to 4.4). Straight
+ * lines along an axis, diagonal ones, corners. Start at masu_smaa_weights().
  *
- * What is asked of the edges outside of the picture is what its outermost pixels have.
+ * Outside the image the edges of its outermost pixels are repeated.
  */
 #ifndef MASU_SMAA_WEIGHTS_GLSL
 #define MASU_SMAA_WEIGHTS_GLSL
@@ -17,14 +17,14 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SMAA_AREA, std430) readonly bu
     uint smaa_area[MASU_SMAA_AREA_WORDS];
 };
 
-/* Of up to 16 bits, not all 0: the highest one. */
+/* The highest of up to 16 bits, not all 0. */
 int masu_high_bit(uint bits)
 {
     return int(floatBitsToUint(float(bits)) >> 23) - 127;
 }
 
-/* Edges of line `q` in tile `k` along it: bits 0..15 those of the line itself, 16..31 those across.
- * axis 0: rows, 1: columns. */
+/* Edges of line `q` in tile `k` along it: bits 0..15 along the line, 16..31 across. axis 0: rows,
+ * 1: columns. */
 uint masu_line_word(uint axis, int k, int q)
 {
     uvec2 grid = masu_smaa_grid();
@@ -49,16 +49,16 @@ uint masu_cross_at(uint axis, int p, int q)
     return masu_line_word(axis, p >> 4, q) >> (16 + (p & 15)) & 1u;
 }
 
-/* Bit x: the line goes on from pixel x - 1 to x: both have its edge, and none lies between them on
- * either side. */
+/* Bit x: the line continues from pixel x - 1 to x: both have its edge, and none crosses between
+ * them on either side. */
 uint masu_passable(uint word, uint above, uint before)
 {
     uint line = word & 0xFFFFu;
     return line & (line << 1 | (before >> 15 & 1u)) & ~((word | above) >> 16);
 }
 
-/* How many pixels the line goes on from p, back and ahead; `most` back, one more ahead: the
- * original steps by two pixels, and begins between this one and the one before. */
+/* Number of pixels by which the line continues from p, back and ahead; `most` back, one more ahead:
+ * the original steps by two pixels, and begins between this one and the one before. */
 ivec2 masu_line_ends(uint axis, int p, int q, int most)
 {
     int k = p >> 4, i = p & 15;
@@ -103,8 +103,8 @@ ivec2 masu_line_ends(uint axis, int p, int q, int most)
     return min(ivec2(back, ahead), ivec2(most, most + 1));
 }
 
-/* The table at roots of distances, between its texels; pattern: code of the left end + 4 * that
- * of the right one, each 1: an edge above the line, 2: below. */
+/* Interpolates the table at square roots of distances; pattern: code of the left end + 4 * code of
+ * the right end, each 1: an edge above the line, 2: below. */
 vec2 masu_straight_area(uint pattern, ivec2 ends)
 {
     vec2 root = vec2(masu_sqrt(float(ends.x)), masu_sqrt(float(ends.y)));
@@ -118,8 +118,8 @@ vec2 masu_straight_area(uint pattern, ivec2 ends)
     return mix(row.xy, row.zw, part.x);
 }
 
-/* A quarter of a corner is kept sharp: where the line ends in an edge that goes on beyond it,
- * less is blended on that side. */
+/* Keeps a quarter of a corner sharp: if the line ends in an edge that continues beyond it, less is
+ * blended on that side. */
 vec2 masu_keep_corner(uint axis, ivec2 from, ivec2 to, int q, ivec2 ends)
 {
     vec2 nearer = vec2(ends.x <= ends.y ? 0.75 : 0.0, ends.y <= ends.x ? 0.75 : 0.0);
@@ -131,8 +131,8 @@ vec2 masu_keep_corner(uint axis, ivec2 from, ivec2 to, int q, ivec2 ends)
     return clamp(1.0 - vec2(dot(nearer, below), dot(nearer, above)), 0.0, 1.0);
 }
 
-/* Of the edge of pixel p along line q: how much of the pixel lies beyond it, of the pixel on its
- * other side on this one. */
+/* Weights of the edge of pixel p along line q: the share of the pixel beyond it, and of the other
+ * pixel on this side. */
 vec2 masu_straight_weights(uint axis, int p, int q)
 {
     ivec2 ends = masu_line_ends(axis, p, q, 2 * int(push.steps) - 1);
@@ -159,9 +159,9 @@ uvec2 masu_edges_at(ivec2 p)
     return uvec2(word >> 16 & 1u, word & 1u);
 }
 
-/* Steps along a stair of edges until one is missing. The two edges of a step belong to one pixel
- * where the stair rises, `apart` 0, else to two that lie side by side. x: whole steps, y: 1 if
- * the end was not found, z: the last step had an edge above. */
+/* Steps along a stair of edges until one is missing. The two edges of a step belong to one pixel if
+ * the stair rises (`apart` 0), else to two neighbours. x: whole steps, y: 1 if the end was not
+ * found, z: the last step had an edge above. */
 ivec3 masu_search_diagonal(ivec2 p, ivec2 way, int apart)
 {
     int most = int(push.diagonal_steps);
@@ -187,8 +187,7 @@ vec2 masu_diagonal_area(uvec2 pattern, ivec2 ends)
     return unpackUnorm4x8(word).xy;
 }
 
-/* Weights of the edge above pixel p, where it is part of a stair of more than three steps; else
- * 0. */
+/* Weights of the edge above pixel p if it is part of a stair of more than three steps; else 0. */
 vec2 masu_diagonal_weights(ivec2 p, bool left_edge)
 {
     vec2 weights = vec2(0.0);
@@ -222,8 +221,8 @@ vec2 masu_diagonal_weights(ivec2 p, bool left_edge)
     return weights;
 }
 
-/* Of both edges: x and y of the one above, z and w of the one to the left. A diagonal stands for
- * both. */
+/* Weights of both edges: x and y for the one above, z and w for the one to the left. A diagonal
+ * replaces both. */
 vec4 masu_smaa_weights(ivec2 p, bool left_edge, bool top_edge)
 {
     vec4 weights = vec4(0.0);

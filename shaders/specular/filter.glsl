@@ -2,12 +2,12 @@
  * filter.glsl: shared by the filters of reflections: luma and chroma, the radius over which a
  * reflection is similar, and the packing of images.
  *
- *   specular_color, rgba16f    rgb mean radiance over frames; a mean square of its luma. As stored for
- *                              the next frame, a is below 0 if nothing is traced
- *   specular_length, rg32ui  x  low half: hit distance, a half float; high half: frames in the mean,
- *                               in 1/64
- *                            y  motion of the reflection since the previous frame in pixels, two half
- *                               floats; all bits: disoccluded
+ *   specular_color, rgba16f    rgb mean radiance over frames; a mean square of its luma. As stored
+ *                              for the next frame, a is below 0 if nothing is traced
+ *   specular_length, rg32ui  x  low half: hit distance, a half float; high half: frames in the
+ *                               mean, in 1/64
+ *                            y  motion of the reflection since the previous frame in pixels, two
+ *                               half floats; all bits: disoccluded
  */
 #ifndef MASU_SPECULAR_FILTER_GLSL
 #define MASU_SPECULAR_FILTER_GLSL

@@ -21,15 +21,16 @@ float masu_fine_share(masu_guide g, float roughness)
     return g.mixed ? 1.0 : 1.0 - smoothstep(0.1, 0.25, roughness);
 }
 
-/* dither, 0..1: which share of the way to the next step is rounded up. A mean to which each frame adds a
- * little would else stop short of the truth by half a step over that little. 0.5 rounds to the nearest: for what is
- * replaced as a whole. */
+/* dither, 0..1: the fraction of a step that is rounded up. Without dither a mean that changes
+ * slowly would stall half a step before its target. 0.5 rounds to nearest: for values that are
+ * replaced entirely. */
 uint masu_pack_fine(vec3 color, float dither)
 {
     vec3 c = masu_sane(color, 0.0, 32000.0);
     float most = max(max(c.r, c.g), max(c.b, 1.0 / 65536.0));
-    /* From 511.5 on one more than the exponent needs: what rounds to 512 has room. Not from less: 511 must stay what it
-     * is, or the other channels, at half the steps, would be rounded anew in each frame that keeps the word. */
+    /* From 511.5 on the exponent is one higher, so that values that round to 512 fit. Not below:
+     * 511 must be unchanged, or the other channels, at half the precision, would be rounded again
+     * in each frame that keeps the value. */
     int e = clamp(int(floatBitsToUint(most * (512.0 / 511.5)) >> 23) - 127 + 1, -15, 15);
     float scale = uintBitsToFloat(uint(127 + 9 - e) << 23);
     uvec3 m = min(uvec3(c * scale + dither), uvec3(511u));

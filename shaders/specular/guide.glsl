@@ -4,11 +4,11 @@
  * The guide, rg32ui, is the G-buffer at half size. A texel represents one pixel of its 2x2, another
  * one in each frame, so that four frames cover all (order: noise/sequence.glsl):
  *   x  bits 0-25  octahedral normal, as in the G-buffer
- *      bits 26-31 roughness of the traced lobe, 0..63; 0: a mirror (brdf/vndf.glsl). A roughness of 0.05
- *                 is never rounded to 0: its rays have noise
- *   y  depth, with its three lowest bits replaced: two by the number of the pixel, the third is set if
- *      the four pixels are not one surface; 0: nothing is traced here. The content of other images at
- *      such a texel is undefined
+ *      bits 26-31 roughness of the traced lobe, 0..63; 0: a mirror (brdf/vndf.glsl). A roughness of
+ *                 0.05 is never rounded to 0: its rays have noise
+ *   y  depth, with its three lowest bits replaced: two by the number of the pixel, the third is set
+ *      if the four pixels are not one surface; 0: nothing is traced here. The content of other
+ *      images at such a texel is undefined
  */
 #ifndef MASU_SPECULAR_GUIDE_GLSL
 #define MASU_SPECULAR_GUIDE_GLSL

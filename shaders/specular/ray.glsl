@@ -2,15 +2,16 @@
  * ray.glsl: image formats of a traced texel's ray and of its hit.
  *
  *   specular_ray, rg32ui   x  direction, octahedral, 16 + 16 bits
- *                          y  square root of the density per steradian, and the weight of the ray for
- *                             its lobe, 1 in the mean: two half floats; with debug.reference the factor
- *                             of the radiance, three numbers with a shared exponent (9 bits each and 5)
- *   specular_hit, rgba32ui x  distance, a float; below 0: a miss
+ *                          y  square root of the density per steradian, and the weight of the ray
+ *                             for its lobe, 1 in the mean: two half floats; with debug.reference
+ *                             the factor of the radiance, three numbers with a shared exponent (9
+ *   bits each and 5) specular_hit, rgba32ui x  distance, a float; below 0: a miss
  *                          of a polygon  y number of the traced instance, z of the triangle, w
  *                             barycentric coordinates of its second and third corner, 16 bits each
- *                          of the SDF    y bit 31 set, then the point's previous minus present position,
- *                             three signed 8-bit numbers with a shared exponent of 7; z normal as in the
- *                             G-buffer, w albedo (sqrt) or radiance as there, roughness, 8 bits each
+ *                          of the SDF    y bit 31 set, then the point's previous minus present
+ *                             position, three signed 8-bit numbers with a shared exponent of 7; z
+ *                             normal as in the G-buffer, w albedo (sqrt) or radiance as there,
+ * roughness, 8 bits each
  */
 #ifndef MASU_SPECULAR_RAY_GLSL
 #define MASU_SPECULAR_RAY_GLSL

@@ -1,7 +1,7 @@
 /*
  * bvh.glsl: rays against the triangles of a scene: the tree over the instances of a frame, then the
- * trees over the triangles of their meshes (src/scene/blob.h, src/scene/trace.h). The includer declares, each of uvec4,
- *   masu_trace_static[]     header, nodes and triangles as baked
+ * trees over the triangles of their meshes (src/scene/blob.h, src/scene/trace.h). The includer
+ *   declares, each of uvec4, masu_trace_static[]     header, nodes and triangles as baked
  *   masu_trace_frame[]      header, nodes and records of this frame
  *   masu_trace_vertices[]   the vertices of the blob
  *   MASU_TRACE_LANES        how many invocations its group has
@@ -9,21 +9,24 @@
  *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) false: the ray passes through
  *   MASU_TRACE_COUNTERS                                    counts visited nodes and triangles
  *
- * Rays are in world space minus the anchor. Directions need not have unit length; t is in their unit.
- * A ray that is not finite, has no direction, or begins farther than 1e15 out hits nothing. A ray
- * that would visit more than MASU_TRACE_VISITS nodes sets masu_trace_exceeded, and hits nothing.
+ * Rays are in world space minus the anchor. Directions need not have unit length; t is in their
+ * unit. A ray that is not finite, has no direction, or begins farther than 1e15 out hits nothing. A
+ * ray that would visit more than MASU_TRACE_VISITS nodes sets masu_trace_exceeded, and hits
+ * nothing.
  *
  * BOXES. Near and far planes are chosen by the signs of the direction, so that no min or max has an
  * operand 0 Inf (Ize 2013, Robust BVH Ray Traversal); the smallest components of a direction are
- * raised to 1e-12 of its largest. The distance to a plane is (origin - o) / d + q scale / d with a q of 0 to
- * 255: both terms may be large with a small sum, so a relative margin on the sum, as in that paper,
- * would not be enough. The margin here is relative to the terms, which bounds the total rounding.
+ * raised to 1e-12 of its largest. The distance to a plane is (origin - o) / d + q scale / d with a
+ * q of 0 to 255: both terms may be large with a small sum, so a relative margin on the sum, as in
+ * that paper, would not be enough. The margin here is relative to the terms, which bounds the total
+ * rounding.
  *
  * TRIANGLES. Watertight, Woop, Benthin and Wald 2013: vertices are sheared so that the ray is the z
  * axis, and edge functions have signs. An edge function is a difference of two rounded products,
  * and rounding is monotone: its sign is right or it is 0, and the triangle on the other side of the
  * edge gets the same number with the other sign. 0 is inside. So no ray passes between triangles
- * that share vertices, and the paper's second attempt in double is unnecessary. `precise` keeps a fused multiply-add from rounding just one of the products.
+ * that share vertices, and the paper's second attempt in double is unnecessary. `precise` keeps a
+ * fused multiply-add from rounding just one of the products.
  *
  * LOOPS. The cost is in loads: a software driver loads each value for each lane. So a node is 12
  * uints, its remaining children are one uint of the stack, and the tree over instances has a

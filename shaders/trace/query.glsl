@@ -5,8 +5,8 @@
  *                    first triangle
  * and may define
  *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d)
- *                    false: the ray of object-space direction d passes through this point. For meshes
- *                    that are not marked opaque
+ *                    false: the ray of object-space direction d passes through this point. For
+ *                    meshes that are not marked opaque
  *
  * Rays are in world space minus the anchor. A ray that is not finite, has no direction, or begins
  * farther than 1e15 out hits nothing: the specification leaves the first two undefined. A ray with

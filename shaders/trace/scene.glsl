@@ -3,8 +3,8 @@
  * blue noise, materials, small copies of the textures, and the transforms of the present and the
  * previous frame.
  *
- *   masu_trace_static[0].w   where these begin: a header with the offsets of materials, textures and
- *                            texels; then the noise tile, four values per element
+ *   masu_trace_static[0].w   where these begin: a header with the offsets of materials, textures
+ *                            and texels; then the noise tile, four values per element
  *   masu_trace_static[0].z   number of triangles; masu_trace_frame[0].z: number of traced instances
  *   masu_trace_frame[0].w    six rows per traced instance: object to world minus anchor, now and in
  *                            the previous frame; then, with looks, two rows per instance

@@ -2,7 +2,7 @@
  * easu.glsl: the arithmetic of FSR1's edge-adaptive upscale (AMD, ffx_fsr1 v1.0.2, fp32 path),
  * approximate reciprocals included. The scalar judge is tests/reference/fsr1.c.
  *
- * The result jumps, by up to tens of 255ths, where the gradient counts as none, and where three
+ * The result jumps, by up to tens of 255ths, if the gradient is taken as zero, and if three
  * neighbours of different colour have the same luma: one unit in the last place then decides between a
  * straight edge and none. With MASU_EXACT (debug.exact) every operation is rounded by itself, in AMD's
  * order, so that all drivers take the same side. Without, compilers fuse and taps are placed in steps:
@@ -70,7 +70,8 @@ masu_kernel masu_kernel_of(vec3 edge)
 }
 
 #ifdef MASU_EXACT
-/* Adds one tap to rgb = weighted colour, a = weight, in AMD's order: kernel.glsl has what it is. */
+/* Adds one tap to rgb = weighted colour, a = weight, in AMD's order; kernel.glsl explains the
+ * weight. */
 vec4 add_tap(vec4 sum, masu_kernel k, vec2 p, float x, float y, vec3 colour)
 {
     SAME vec2 offset = vec2(x, y) - p;
@@ -147,7 +148,7 @@ masu_centres masu_centres_of(masu_taps t)
     return m;
 }
 
-/* The clamp removes ringing, and makes a flat area come out exactly as it went in. */
+/* The clamp removes ringing, and leaves a flat area unchanged. */
 vec3 masu_easu(masu_taps t, vec3 edge, vec2 p)
 {
     vec3 least = min(min(t.f, t.g), min(t.j, t.k));

@@ -1,19 +1,22 @@
 /*
- * easu_fast.glsl: an edge-adaptive upscale after FSR1's EASU (easu.glsl), for about half of its
- * arithmetic. The scalar judge is MASU_REF_FAST of tests/reference/fsr1.c. What differs:
- * - Where the four texels around a pixel differ by at most a step of 8 bits, it is their bilinear
- *   mean. Both that and what EASU gives lie between the least and the most of the four (EASU's
- *   clamp), so they differ by a step at most. The other eight texels are not read: they can turn
- *   and stretch the kernel, but not lead it out of that range.
- * - How straight an edge is is asked once, of the luma that bilinear filtering gives at the pixel
- *   and one texel beside it, instead of at each of the four texels. The gradient is the same number
- *   in both: the mean of four differences is the difference of two means.
- * - Three equal lumas are not asked which of them differs in the last bit: a small number under the
- *   fraction makes that continuous. So nothing has to be exact: fetches are taken as they come, the
- *   compiler may fuse, and taps lie at whole steps from the first instead of each being turned.
+ * easu_fast.glsl: an edge-adaptive upscale after FSR1's EASU (easu.glsl), with about half of its
+ * arithmetic. The scalar reference is MASU_REF_FAST of tests/reference/fsr1.c. Differences:
  *
- * With MASU_HALF the taps are weighted and summed in 16-bit floats. What decides (flat or not, the
- * edge) stays in 32: a half of a quotient of small differences would be noise.
+ * - If the four texels around a pixel differ by at most a step of 8 bits, the result is their
+ * bilinear mean. Both this mean and EASU's result are between the least and the most of the four
+ * (EASU's clamp), so they differ by a step at most. The other eight texels are not read: they can
+ * rotate and stretch the kernel, but not exceed that range.
+ *
+ * - The straightness of an edge is computed once, from the luma that bilinear filtering gives at
+ * the pixel and one texel around it, instead of at each of the four texels. The gradient is the
+ * same number in both: the mean of four differences is the difference of two means.
+ *
+ * - Three equal lumas are not compared in their last bit: a small number under the fraction makes
+ * the result continuous. So nothing has to be exact: fetches are used unchanged, the compiler may
+ * fuse, and taps are at whole steps from the first instead of each being rotated.
+ *
+ * With MASU_HALF the taps are weighted and summed in 16-bit floats. Decisions (flat or not, the
+ * edge) are made in 32 bits: a 16-bit quotient of small differences would be noise.
  */
 #ifndef MASU_EASU_FAST_GLSL
 #define MASU_EASU_FAST_GLSL
@@ -41,8 +44,8 @@ vec4 masu_centres(vec2 p)
     return vec4(q.x * q.y, p.x * q.y, q.x * p.y, p.x * p.y);
 }
 
-/* In differences: of four equal texels it is that texel, to the bit. Were a constant half way
- * between two steps of 8 bits to fall to either, RCAS would make a pattern of it. */
+/* As differences: for four equal texels the result is bit-identical. If a constant halfway between
+ * two steps of 8 bits were rounded to either, RCAS would amplify it to a pattern. */
 vec3 masu_bilinear(masu_taps t, vec2 p)
 {
     vec3 above = t.f + p.x * (t.g - t.f);

@@ -1,10 +1,11 @@
 /*
- * kernel.glsl: the mean of twelve texels that EASU takes (easu.glsl, easu_fast.glsl), weighted by where they
- * lie in a kernel that is turned and stretched along the edge (AMD, ffx_fsr1 v1.0.2). Taps lie at whole
- * steps from the first: their squared distance is a polynomial of two whole numbers.
+ * kernel.glsl: EASU's weighted mean of twelve texels (easu.glsl, easu_fast.glsl), with a kernel
+ * that is rotated and stretched along the edge (AMD, ffx_fsr1 v1.0.2). Taps are at whole steps from
+ * the first: their squared distance is a polynomial of two whole numbers.
  *
- * With MASU_HALF taps are weighted and summed in 16-bit floats, two at a time. The polynomial's terms cancel, which
- * floats of 11 bits do not stand: there both coordinates of each tap are found, by two additions.
+ * With MASU_HALF taps are weighted and summed in 16-bit floats, two at a time. The polynomial's
+ * terms cancel, which floats of 11 bits do not tolerate: there both coordinates of each tap are
+ * computed, by two additions.
  */
 #ifndef MASU_KERNEL_GLSL
 #define MASU_KERNEL_GLSL
@@ -25,7 +26,7 @@
 #endif
 
 /* These two are specification, not optimisation: a true reciprocal changes hard edges by 16/255 and
- * binary noise by 70/255. They are finite for every operand met here, 0 included. */
+ * binary noise by 70/255. They are finite for every operand here, including 0. */
 float approximate_rcp(float a)
 {
     return uintBitsToFloat(0x7EF07EBBu - floatBitsToUint(a));
@@ -125,7 +126,7 @@ vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
     float b = (square.x - square.y) * (k.dir.x * k.dir.y);
     float d = a * p.x + b * p.y, e = b * p.x + c * p.y;
     float f = d * p.x + e * p.y - 2.5;
-    /* Columns -1, 1 and 2 beside 0, rows likewise. */
+    /* Columns -1, 1 and 2 relative to 0, rows likewise. */
     float left = a + 2.0 * d, right = a - 2.0 * d, far_right = 4.0 * (a - d);
     float above = c + 2.0 * e + f, below = c - 2.0 * e + f, far_below = 4.0 * (c - e) + f;
     float both = 2.0 * b;

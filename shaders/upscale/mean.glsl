@@ -1,20 +1,23 @@
 /*
- * mean.glsl: a mean over frames as `history` holds it, 16 bits a channel: display light, and how many samples
- * stand in it, of which there are 28 of before and this frame's one at most. After globals.glsl.
+ * mean.glsl: the format of `history`, a mean over frames with 16 bits per channel: display-linear
+ * colour and the number of samples in the mean: at most 28 earlier ones and one of this frame.
+ * After globals.glsl.
  *
- * It is rounded up or down by chance: the nearest step would hold a history still that is a little wrong. In steps of 1/65535,
- * a hundredth of one of 8 bits of sRGB (in the dark a twentieth); of halves, a tenth where it is bright, which every second
- * pixel of a sky shows. Halves it is where the device does not filter unorm, and beyond white.
+ * It is rounded with dither: rounding to nearest would freeze a history that is slightly wrong.
+ * Steps are 1/65535, a hundredth of an 8-bit sRGB step (in the dark a twentieth); steps of half
+ * floats are a tenth at bright values, which every second pixel of a sky shows. Half floats are
+ * used if the device does not filter unorm, and for values beyond white.
  */
 #ifndef MASU_MEAN_GLSL
 #define MASU_MEAN_GLSL
 
 layout(constant_id = 14) const bool masu_half_means = false;
 
-const float masu_mean_counts = 64.0; /* of which a channel holds the share */
+const float masu_mean_counts = 64.0; /* the channel holds the count divided by this */
 const float masu_mean_most = 29.5;   /* samples, with room for rounding */
 
-/* Of `history`: the layer that this frame writes, and that of the frame before. What was not submitted is followed by a cut. */
+/* Layers of `history`: written by this frame, and by the previous one. A frame that was not
+ * submitted is followed by a cut. */
 int masu_layer()
 {
     return int(frame.history.x & 1u);
@@ -25,7 +28,8 @@ float masu_layer_before()
     return float(1u - (frame.history.x & 1u));
 }
 
-/* What a mean is rounded by: R2 over the pixels as in dither.glsl, in 24 bits, which multiply faster. */
+/* Dither for rounding a mean: R2 over the pixels as in dither.glsl, in 24 bits, which multiply
+ * faster. */
 const uvec2 masu_chance_step = uvec2(0xC13FAAu, 0x91E10Eu);
 
 uint masu_chance(uvec2 at)
@@ -33,8 +37,8 @@ uint masu_chance(uvec2 at)
     return at.x * masu_chance_step.x + at.y * masu_chance_step.y + frame.history.x * 0x9E3779u;
 }
 
-/* light: 0 to 1; NaN, infinities and more than 1 become 1 in halves, whatever they are in unorm. chance: of its pixel; its last 24
- * bits count. */
+/* light: 0 to 1; as half floats NaN, infinities and values above 1 become 1, as unorm anything.
+ * chance: of its pixel; only its last 24 bits are used. */
 uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
 {
     if (masu_half_means) {
@@ -47,7 +51,7 @@ uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
     return uvec4(packUnorm2x16(rounded.rg), packUnorm2x16(vec2(rounded.b, count * (1.0 / masu_mean_counts))), 0u, 0u);
 }
 
-/* How many samples stand in what was sampled. */
+/* Number of samples in a sampled mean. */
 float masu_mean_count(vec4 mean)
 {
     return masu_half_means ? mean.a : mean.a * masu_mean_counts;

@@ -1,10 +1,11 @@
 /*
- * place.glsl: where a pixel of the output lies in the input, the same on every driver.
+ * place.glsl: the input position of an output pixel, identical on every driver.
  *
- * The scale is in * (1 / out), rounded twice, as AMD's host code has it: with odd:odd ratios (3:5)
- * some pixels lie exactly on a texel centre, where its last bit decides which four texels are the
- * nearest. So the host computes it (src/device/record.c): a division of a shader may be 2.5 units off,
- * differently on each device, and to make it exact takes a pixel more than its four texels do.
+ * The scale is in * (1 / out), rounded twice, as in AMD's host code: with odd:odd ratios (3:5) some
+ * pixels are exactly on a texel centre, where the last bit decides which four texels are the
+ * closest. So the host computes it (src/device/record.c): a shader division may have an error of
+ * 2.5 units, different on each device, and making it exact costs a pixel more than filtering its
+ * four texels.
  */
 #ifndef MASU_PLACE_GLSL
 #define MASU_PLACE_GLSL

@@ -1,8 +1,8 @@
 /*
  * rcas.glsl: the arithmetic of FSR1's contrast-adaptive sharpening (AMD, ffx_fsr1 v1.0.2), with a
- * true reciprocal at the end: AMD's approximate one loses 0.32 % of a constant picture. The scalar judge is
- * tests/reference/fsr1.c. MASU_EXACT (debug.exact): divisions and order as in that judge, so that all
- * drivers agree to the bit.
+ * true reciprocal at the end: AMD's approximate one loses 0.32 % of a constant image. The scalar
+ * judge is tests/reference/fsr1.c. MASU_EXACT (debug.exact): divisions and order as in that judge,
+ * so that all drivers agree exactly.
  */
 #ifndef MASU_RCAS_GLSL
 #define MASU_RCAS_GLSL
@@ -45,37 +45,41 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
 
 #else
 
-/* Under the fractions below, so that 0/0, a ring of black or of white, is 0: no limit. Above half a unit in the
- * last place of 1; it moves a limit by less than 3e-4 of itself where there is a step of 8 bits to go. */
+/* Added to the divisors below, so that 0/0, a ring of black or of white, is 0: no limit. Above half
+ * a unit in the last bit of 1; it changes a limit by less than 3e-4 of its value if there is an
+ * 8-bit step to gain. */
 const float room = 1.0 / 1048576.0;
 
-/* What of masu_rcas_off is added, by a cross of five texels of 0..1; stops: exp2 of the stops, 1 the sharpest, at most 2^64.
+/* The factor of masu_rcas_off that is added, from a cross of five texels of 0..1; stops: exp2 of
+ * the stops, 1 the sharpest, at most 2^64.
  *
- * The strongest lobe w of a channel is a quarter of the lesser of min / most and (1 - max) / (1 - least), min and
- * max with the centre, least and most without; at most 3/16. Kept as l = 1 / (4 w), each fraction needs one guard.
- * And (c - w ring) / (1 - 4 w) = c + (c - ring / 4) / (l - 1): one reciprocal less, and whatever it
- * is, a constant picture stays what it was. */
+ * The strongest lobe w of a channel is a quarter of the lesser of min / most and (1 - max) / (1 -
+ * least), min and max with the centre, least and most without; at most 3/16. Stored as l = 1 / (4
+ * w), each fraction needs one guard. And (c - w ring) / (1 - 4 w) = c + (c - ring / 4) / (l - 1):
+ * one reciprocal less, and a constant image is unchanged for any l. */
 float masu_rcas_share(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float stops)
 {
     vec3 least = min(min(up, left), min(right, down));
     vec3 most = max(max(up, left), max(right, down));
     vec3 low = most / (min(least, centre) + room);
     vec3 high = (1.0 - least) / ((1.0 + room) - max(most, centre));
-    float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order each line is one max3, where there is one */
+    float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order each line is one max3
+                                                    * instruction, if available */
     l = max(max(l, low.g), high.g);
     l = max(max(l, low.b), high.b);
-    return 1.0 / (l * stops - 1.0); /* what it divides by is at least 1/3 */
+    return 1.0 / (l * stops - 1.0); /* the divisor is at least 1/3 */
 }
 
-/* How far the centre is from the mean of its ring: so many times the share are added to it. */
+/* The difference between the centre and the mean of its ring; masu_rcas_share() times this is
+ * added. */
 vec3 masu_rcas_off(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down)
 {
     return centre - 0.25 * ((up + left) + (right + down));
 }
 
-/* Whether two pixels side by side, the first of an even column, are sharpened at all. The share is at most 3: where both
- * centres are that near to the means of their rings, as on all that is flat or a gradient, half a step of 8 bits is what
- * there is to gain, and it is left. */
+/* Whether two neighbouring pixels, the first in an even column, are sharpened at all. The share is
+ * at most 3: if both centres are that close to the means of their rings, as in flat areas and
+ * gradients, sharpening changes at most half an 8-bit step and is skipped. */
 bool masu_rcas_asked(vec3 off, vec3 off2)
 {
     vec3 most = max(abs(off), abs(off2));

@@ -1,7 +1,7 @@
 /*
- * taps.glsl: the twelve texels that EASU reads, of the corner pc.render_* of an image: what lies beyond repeats its
- * edge. f, the first of the middle four, lies between -1 and the last texel (place.glsl), so each column and each
- * row is clamped on one side: eight operations for all twelve.
+ * taps.glsl: the twelve texels that EASU reads, from the corner pc.render_* of an image, clamped to
+ * its edge. f, the first of the central four, is between -1 and the last texel (place.glsl), so
+ * each column and each row is clamped on one side: eight operations for all twelve.
  */
 #ifndef MASU_TAPS_GLSL
 #define MASU_TAPS_GLSL

@@ -59,9 +59,9 @@ void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const m
 
 /* Something has changed. */
 void masu_bounce_restart(masu_bounce *b);
-/* Chooses at most `most` probes, encoded as in shared/bounce.h; returns their number. */
 /* Probes of the next frame, of `most` in a burst. */
 uint32_t masu_bounce_pace(const masu_bounce *b, uint32_t most);
+/* Chooses at most `most` probes, encoded as in shared/bounce.h; returns their number. */
 uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most,
                             uint32_t *words);
 

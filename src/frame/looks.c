@@ -45,8 +45,9 @@ masu_result masu_looks_check(const masu_frame_plan *plan, const masu_look *look,
         for (uint32_t k = 0; k < p->count; k++) {
             if (p->at[k] >= p->least && p->at[k] <= p->most) continue;
             return masu_fail(detail, MASU_ERROR_ARGUMENT, p->name, p->count, k,
-                             "%s[%u] is %g, allowed are %g to %g", p->name, k, (double)p->at[k],
-                             (double)p->least, (double)p->most);
+                             "%s%s is %g, allowed are %g to %g", p->name,
+                             p->count == 1 ? "" : k == 0 ? "[0]" : k == 1 ? "[1]" : "[2]",
+                             (double)p->at[k], (double)p->least, (double)p->most);
         }
     }
     if (look->flags & ~known)

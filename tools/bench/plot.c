@@ -1,6 +1,7 @@
 /* plot.c: see plot.h. */
 #include "bench/plot.h"
 
+#include "bench/labels.h"
 #include "bench/sweep.h"
 #include "cli/gnuplot.h"
 #include "image.h"
@@ -56,9 +57,53 @@ static bool is_far(double from_time, double from_error, double time, double erro
     return hypot(log(time / from_time), log(error / from_error)) > 0.12;
 }
 
-/* Arrows from the parent to each single technique. Returns their number. */
-static uint32_t write_arrows(FILE *f, const masu_plot *p) {
+/* x, y and text of a label, if there is room for it. Returns whether there is. */
+static bool write_label(FILE *f, masu_labels *labels, const double at[2], const char *text,
+                        double font) {
+    double place[2];
+    if (!masu_labels_place(labels, at, text, font, place)) return false;
+    fprintf(f, "%.9g %.9g ", place[0], place[1]);
+    masu_gnuplot_label(f, text);
+    fprintf(f, "\n");
+    return true;
+}
+
+/* Numbers of the rungs, beside their rings and the front. Returns how many have room. */
+static uint32_t write_numbers(FILE *f, const masu_plot *p, masu_labels *labels) {
     uint32_t count = 0;
+    for (uint32_t k = 1; k < p->front_count; k++) {
+        const uint32_t a = p->front[k - 1], b = p->front[k];
+        for (int step = 1; step < 12; step++) {
+            const double part = step / 12.0, error = shown_error(&p->rows[a]);
+            const double at[2] = {p->ratios[a] * pow(p->ratios[b] / p->ratios[a], part),
+                                  error * pow(shown_error(&p->rows[b]) / error, part)};
+            masu_labels_mark(labels, at, 2);
+        }
+    }
+    for (uint32_t r = 0; r < p->rung_count; r++) {
+        const uint32_t i = p->rungs[r];
+        masu_labels_mark(labels, (const double[]){p->ratios[i], shown_error(&p->rows[i])}, 6);
+    }
+    fprintf(f, "$numbers << EOD\n");
+    for (uint32_t r = 0; r < p->rung_count; r++) {
+        const uint32_t i = p->rungs[r];
+        char number[16];
+        snprintf(number, sizeof number, "%u", r);
+        count += write_label(f, labels, (const double[]){p->ratios[i], shown_error(&p->rows[i])},
+                             number, 13);
+    }
+    fprintf(f, "EOD\n");
+    return count;
+}
+
+/* Arrows from the parent to each single technique, then the names that have room. Returns the
+ * number of arrows; *named: that of names. */
+static uint32_t write_arrows(FILE *f, const masu_plot *p, masu_labels *labels, uint32_t *named) {
+    uint32_t count = 0;
+    char *names = NULL;
+    size_t bytes = 0;
+    FILE *n = open_memstream(&names, &bytes);
+    *named = 0;
     fprintf(f, "$arrows << EOD\n");
     for (uint32_t i = 0; i < p->row_count; i++) {
         const masu_row *row = &p->rows[i],
@@ -68,14 +113,16 @@ static uint32_t write_arrows(FILE *f, const masu_plot *p) {
         if (!drawable(p, from)) continue;
         const char *name =
             strncmp(row->setting, "scale=", 6) ? row->setting : strchr(row->setting, '+');
-        bool named = is_far(p->ratios[from], shown_error(parent), p->ratios[i], shown_error(row));
-        fprintf(f, "%.9g %.9g %.9g %.9g ", p->ratios[from], shown_error(parent), p->ratios[i],
-                shown_error(row));
-        masu_gnuplot_label(f, !named ? "" : name ? name + (*name == '+') : row->setting);
-        fprintf(f, "\n");
+        const double at[2] = {p->ratios[i], shown_error(row)};
+        fprintf(f, "%.9g %.9g %.9g %.9g\n", p->ratios[from], shown_error(parent), at[0], at[1]);
         count++;
+        if (n && is_far(p->ratios[from], shown_error(parent), at[0], at[1]))
+            *named += write_label(n, labels, at, name ? name + (*name == '+') : row->setting, 9);
     }
-    fprintf(f, "nan nan nan nan \"\"\nEOD\n");
+    fprintf(f, "nan nan nan nan\nEOD\n$names << EOD\n");
+    if (n && !fclose(n)) fwrite(names, 1, bytes, f);
+    free(names);
+    fprintf(f, "EOD\n");
     return count;
 }
 
@@ -84,13 +131,17 @@ static const char style[] =
     "set logscale xy\n"
     "set grid xtics ytics mxtics mytics lc rgb '#dddddd', lc rgb '#eeeeee'\n"
     "set border 3 lc rgb '#444444'\n"
+    "set margins screen 0.09, screen 0.965, screen 0.11, screen 0.9225\n"
     "set xtics nomirror (0.05,0.1,0.15,0.2,0.3,0.4,0.5,0.6,0.8,1,1.2,1.5,2,3,4,6,8)\n"
     "set ytics nomirror format '%g' add (0.002,0.005,0.02,0.05,0.2,0.5)\n"
     "set ylabel 'mean FLIP against the ground truth, in motion and stationary'\n";
 
+/* The margins that `style` leaves of 960x640 pixels. */
+static const double area[2] = {840, 520};
+
 /* Explicit ranges, because gnuplot would extend them to powers of ten. The right side has space for
  * names. */
-static void write_ranges(FILE *f, const masu_plot *p) {
+static masu_labels ranges_of(const masu_plot *p) {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {0.0, 0.0};
     for (uint32_t i = 0; i < p->row_count; i++) {
         if (!drawable(p, i)) continue;
@@ -100,9 +151,10 @@ static void write_ranges(FILE *f, const masu_plot *p) {
             high[k] = fmax(high[k], at[k]);
         }
     }
-    if (!(high[0] > 0.0)) return;
-    fprintf(f, "set xrange [%.9g:%.9g]\n", low[0] / 1.08, 1.4 * high[0]);
-    fprintf(f, "set yrange [%.9g:%.9g]\n", low[1] / 1.15, 1.25 * high[1]);
+    if (!(high[0] > 0.0)) low[0] = high[0] = low[1] = high[1] = 1;
+    return (masu_labels){.low = {low[0] / 1.08, low[1] / 1.15},
+                         .high = {1.4 * high[0], 1.25 * high[1]},
+                         .size = {area[0], area[1]}};
 }
 
 static void write_title(FILE *f, const masu_plot *p, const char *what) {
@@ -117,9 +169,13 @@ static void write_commands(FILE *f, const masu_plot *p) {
     write_points(f, p);
     write_list(f, "front", p, p->front, p->front_count);
     write_list(f, "rungs", p, p->rungs, p->rung_count);
-    uint32_t arrows = write_arrows(f, p);
+    masu_labels labels = ranges_of(p);
+    uint32_t named, numbers = write_numbers(f, p, &labels);
+    labels.count = 0; /* of the other chart */
+    uint32_t arrows = write_arrows(f, p, &labels, &named);
     fputs(style, f);
-    write_ranges(f, p);
+    fprintf(f, "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n", labels.low[0], labels.high[0],
+            labels.low[1], labels.high[1]);
     fprintf(f, "set xlabel 'time / time of the base setting (%s)'\n", p->clock);
     fprintf(f, "set output 'front.svg'\nset key top right\n");
     write_title(f, p, "error against time, and the ladder");
@@ -135,9 +191,8 @@ static void write_commands(FILE *f, const masu_plot *p) {
                 marks[k], colors[k], names[k]);
     fprintf(f, "  $rungs using 1:2 with points pt 6 ps 2 lw 2 lc rgb '#d55e00' title 'rungs'");
     /* gnuplot 5.4 crashes if there are no labels. */
-    if (p->rung_count) {
-        fprintf(f, ", \\\n  $rungs using 1:2:3 with labels offset 0,1.2 textcolor rgb '#d55e00' "
-                   "notitle");
+    if (numbers) {
+        fprintf(f, ", \\\n  $numbers using 1:2:3 with labels left textcolor rgb '#d55e00' notitle");
     }
     fprintf(f, "\n");
     fprintf(f, "set output 'techniques.svg'\nset key off\n");
@@ -145,9 +200,9 @@ static void write_commands(FILE *f, const masu_plot *p) {
     fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888'");
     if (arrows) {
         fprintf(f, ", \\\n  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 "
-                   "filled lw 1.2 lc rgb '#0072b2', \\\n"
-                   "  $arrows using 3:4:5 with labels font ',9' left offset 0.5,0 noenhanced");
+                   "filled lw 1.2 lc rgb '#0072b2'");
     }
+    if (named) fprintf(f, ", \\\n  $names using 1:2:3 with labels font ',9' left noenhanced");
     fprintf(f, "\n");
 }
 

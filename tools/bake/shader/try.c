@@ -481,6 +481,7 @@ static void body(void *argument, int fd) {
         t->result = masu_bake_machine_buffer(t->machine, BIND_RESULT, &count);
         t->decisions = masu_bake_machine_decisions(t->machine, &t->site_count);
         t->sites = masu_bake_allocate(t->site_count * sizeof *t->sites);
+        memset(t->sites, 0, t->site_count * sizeof *t->sites);
         for (uint32_t i = 0; t->slots && i < t->scene->slot_count; i++)
             t->slots[i].f = (double)t->scene->slots[i];
         if (try_parts(t) && t->measures && t->jumps_by > 0)
