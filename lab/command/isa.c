@@ -101,7 +101,7 @@ static const masu_option rows[] = {
               "write every stage of every pipeline as CSV; - is standard output"),
     {.name = NULL}};
 
-/* Reserves one of each kind of what the host adds at run time. */
+/* Reserves one object of each kind that a host can add at run time. */
 static void reserve_extras(masu_desc *desc) {
     masu_reserve *r = &desc->reserve;
     r->particles = r->decals = r->textures = 1;

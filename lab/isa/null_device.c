@@ -87,7 +87,7 @@ static masu_isa_row *add_row(const char *stage) {
  * spills:fills". */
 static bool is_printed(void) { return getenv("BIFROST_MESA_DEBUG") != NULL; }
 
-/* Reads the number before a word. */
+/* Reads the number before a given word. */
 static double before_word(const char *line, const char *word) {
     const char *at = strstr(line, word);
     while (at && at > line && strchr("0123456789.", at[-1])) at--;

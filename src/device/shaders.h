@@ -43,8 +43,8 @@ uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
 /* Whether the pass draws polygons, with their textures in set 2. */
 int masu_draws_polygons(uint32_t pass);
 
-/* What the layouts of a pass have, each the largest number in one stage. Every sampled image has a
- * sampler. */
+/* The descriptors in a pass's layouts: for each kind, the largest number in one stage. Every
+ * sampled image has a sampler. */
 typedef struct masu_stage_needs {
     uint32_t uniform_buffers, storage_buffers; /* in set 0 */
     uint32_t sampled_images;                   /* in sets 1 and 2 */

@@ -16,7 +16,7 @@ typedef struct masu_interface {
  * reported. */
 masu_interface masu_interface_of(const uint32_t *words, uint64_t count);
 
-/* Gives the variables of set 0 at binding `from` the binding `to`, in place. */
+/* Changes the binding of set 0's variables from `from` to `to`, in place. */
 void masu_rebind(uint32_t *words, uint64_t count, uint32_t from, uint32_t to);
 
 #endif

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of all live textures together, and of those written per frame. */
+/* For all live textures in total, and for all textures written per frame. */
 #define TEXTURE_TEXELS_MAX ((uint64_t)1 << 28)
 #define TEXTURE_BYTES_MAX ((uint32_t)1 << 28)
 

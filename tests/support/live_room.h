@@ -1,5 +1,5 @@
-/* live_room.h: what the tests of live textures and trails share: a room with a square that has a map,
- * room for sprites and textures of random blocks, a bilinear filter in doubles. */
+/* live_room.h: a room for the tests of live textures and trails: a square with a map, memory for
+ * sprites and textures of random blocks, and a bilinear filter in double precision. */
 #ifndef SUPPORT_LIVE_ROOM_H
 #define SUPPORT_LIVE_ROOM_H
 

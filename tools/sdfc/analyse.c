@@ -1,17 +1,18 @@
-/* analyse.c: what is known of a field before it is ever evaluated (sdfc_facts): its Lipschitz
- * constant, where the solid can be, and how fast the field grows outside of that. Every operator
- * has a rule; what a rule needs and cannot have (a twist of something endless, a repeated shape
- * that sticks out of its cell) is an error at the operator.
+/* analyse.c: static analysis of a field (sdfc_facts): its Lipschitz constant, bounds of the solid,
+ * and how fast the field grows outside those bounds. Every operator has a rule. If a rule's
+ * precondition fails (a twist of an unbounded shape, a repeated shape that is larger than its
+ * cell), compilation reports an error at the operator.
  *
- * `growth` is what makes the rest sound: a field that is only a lower bound of the distance may
- * stay small far away, so "f <= r", what round(r) makes solid, may reach further than r. With f >=
- * growth * distance(box), r / growth is far enough.
+ * `growth` makes the bounds sound. A field that is only a lower bound of the distance can stay
+ * small far away, so the solid "f <= r" of round(r) can extend further than r. With f >= growth *
+ * distance(box), a margin of r / growth is sufficient.
  *
- * Rules are in analyse_primitive.c and analyse_operator.c; here they are applied, and their limits
- * kept.
+ * The rules are in analyse_primitive.c and analyse_operator.c; this file applies them and checks
+ * their limits.
  *
- * Operators that need derived numbers (the rotation's matrix, 1 / scale) replace their arguments
- * by those, as expressions, so that constants fold and the rest is computed once per frame. */
+ * For operators that need derived numbers (the rotation's matrix, 1 / scale), the analysis replaces
+ * their arguments by the derived expressions, so that constants fold and the others are computed
+ * once per frame. */
 #include "sdfc/facts.h"
 
 void sdfc_analyse(sdfc *c, int shape) {

@@ -18,9 +18,9 @@ static bool levelled(const sdfc *c, const sdfc_shape *s) {
     return false;
 }
 
-/* By how many times k smooth minima of n operands, one after the other, lie below the least of
- * these: most if all are equal. A step lowers y k below the least to (y + (1 - y)^2 / 4) k, which
- * increases with y on 0..1 and stays below 1. */
+/* How far n successive smooth minima are below the minimum of their n operands, in units of k. The
+ * maximum is at equal operands. If the value is y k below the minimum, a step lowers it to (y + (1
+ * - y)^2 / 4) k, which increases with y on 0..1 and stays below 1. */
 static double lowered(int n) {
     double y = 0;
     for (int i = 1; i < n; i++) y += (1 - y) * (1 - y) / 4;

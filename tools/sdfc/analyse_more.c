@@ -30,7 +30,7 @@ static void need_angle(sdfc *c, const sdfc_shape *s, int e) {
     sdfc_fail(c, s->token, "%s: expected an angle from 0 to pi", sdfc_kinds[s->kind].name);
 }
 
-/* Around `count` points, each of so many numbers, the radius of point i at radii[i]. */
+/* Bounds around `count` points of n numbers each; point i has the radius radii[i]. */
 static sdfc_facts around_points(const sdfc *c, const int *n, int count, int numbers, const int *radii) {
     double low[3] = {-SDFC_INFINITY, -SDFC_INFINITY, -SDFC_INFINITY}, high[3];
     for (int k = 0; k < 3; k++) high[k] = SDFC_INFINITY;
@@ -59,7 +59,8 @@ static sdfc_facts round_cone_facts(sdfc *c, sdfc_shape *s) {
     return f;
 }
 
-/* Where an angle around +y of at most t reaches, at distance 1: across, and the least y. */
+/* Bounds of the directions within an angle t of +y, at distance 1: the lateral extent, and the
+ * lowest y. */
 static void reach_of_angle(double t, double *across, double *low) {
     *across = t >= PI / 2 ? 1 : sin(t);
     *low = fmin(0, cos(fmin(t, PI)));
@@ -129,7 +130,7 @@ static sdfc_facts terrain_facts(sdfc *c, const sdfc_shape *s) {
     return f;
 }
 
-/* Where the set of q -> q^2 + c is, and where all points escape. */
+/* Bounds of the set of q -> q^2 + c, and the radius beyond which all points escape. */
 static sdfc_facts julia_facts(const sdfc *c, const sdfc_shape *s) {
     double most = 0;
     for (int i = 0; i < 4; i++) most = hypot(most, sdfc_most(c, s->number[i]));

@@ -8,7 +8,7 @@
 
 /* ---- turning ---- */
 
-/* Rows of the inverse rotation: a turn by -angle. */
+/* Rows of the inverse rotation: by -angle. */
 static void axis_matrix(sdfc *c, sdfc_shape *s) {
     int *n = s->number, m[9];
     sdfc_unit_vector(c, s, n, "an axis");
@@ -31,7 +31,7 @@ static void axis_matrix(sdfc *c, sdfc_shape *s) {
     memcpy(n, m, sizeof m);
 }
 
-/* The inverse of turns about the fixed axes x, then y, then z. */
+/* The inverse of rotations about the fixed axes x, then y, then z. */
 static void euler_matrix(sdfc *c, sdfc_shape *s) {
     int *n = s->number, m[9];
     int cs[3], sn[3], zero = sdfc_number(c, 0), one = sdfc_number(c, 1);
@@ -59,7 +59,7 @@ static void euler_matrix(sdfc *c, sdfc_shape *s) {
 static void rotate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     bool constant = true;
     for (int i = 0; i < 9; i++) constant = constant && sdfc_constant(c, s->number[i]);
-    unsigned kept = 0; /* a turn about y keeps the mirror in y */
+    unsigned kept = 0; /* a rotation about y keeps the mirror symmetry in y */
     for (int i = 0; i < 3; i++) {
         if (sdfc_is(c, s->number[4 * i], 1)) kept |= 1u << i;
     }
@@ -77,7 +77,8 @@ static void rotate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     double center[3] = {0, 0, 0};
     for (int i = 0; i < 3; i++) {
         f->box.low[i] = f->box.high[i] = 0;
-        for (int j = 0; j < 3; j++) { /* the matrix is the inverse: its transpose turns forward */
+        for (int j = 0; j < 3; j++) { /* the matrix is the inverse, so its transpose is the forward
+                                       * rotation */
             double m = c->exprs[s->number[3 * j + i]].value;
             center[i] += m * f->center[j];
             if (m == 0) continue;
@@ -131,7 +132,8 @@ static void scale_arguments(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
         f->box.high[i] = to == to ? to : SDFC_INFINITY;
         least = fmin(least, sdfc_low(c, n[i]));
         largest = fmax(largest, sdfc_most(c, n[i]));
-        /* the centre: of the interval of factors; the rest of it goes to the radius */
+        /* the centre: with the centre of the interval of factors; its half width is added to the
+         * radius */
     }
     double moved = 0;
     for (int i = 0; i < 3; i++) {
@@ -187,22 +189,21 @@ static void keep_box(sdfc_shape *s, const sdfc_box *b) {
     }
 }
 
-/* How many copies in a row are evaluated: those in the nearest cells. `h` is how far the shape
- * reaches from the middle of its cell.
+/* The number of copies in a row that are evaluated: those in the closest cells. `h` is the extent
+ * of the shape from the centre of its cell.
  *
- * 1 suffices if the field is even and does not decrease with the distance from the middle: the
- * nearest copy has the least value. It also suffices for an even field within its cell. In general
- * the copies in the m nearest cells have all of the solid if h <= m / 2 periods, since the middle
- * of any other cell is at least that far. The field of these copies:
+ * 1 is enough if the field is even and does not decrease with the distance from the centre: then
+ * the closest copy has the lowest value. It is also enough for an even field within its cell. In
+ * general, the copies in the m closest cells contain the whole solid if h <= m / 2 periods, because
+ * the centre of any other cell is at least that far. The field of these copies:
  *
- *   even       continuous: where one copy replaces another in the selection, both have the same
- *              value. With the same constant as the shape, and zero at the surface, it never exceeds
- *              L times the distance.
- *   otherwise  the minimum with L (m / 2 periods - h), the least that the other copies can have, if
- *              the shape's field is at least L times the distance to its box. A step there is at
- *              most that long: hence GAP.
+ *   even       continuous: where the selection switches copies, both have the same value. With the
+ *              shape's constant, and zero at the surface, it never exceeds L times the distance.
+ *   otherwise  the minimum with L (m / 2 periods - h), the lower bound of the other copies, if the
+ *              shape's field is at least L times the distance to its box. A step there is at most
+ *              that long: hence GAP.
  *
- * All copies of a row need neither. 0: not possible. */
+ * If all copies of a row are evaluated, neither is needed. 0: not possible. */
 #define GAP 0.2
 
 static int cells_of(bool even, bool rising, double h, double period, int row) {
@@ -214,10 +215,10 @@ static int cells_of(bool even, bool rising, double h, double period, int row) {
     return 0;
 }
 
-/* extra: 0-2 how many cells are evaluated on each axis, 0: it does not repeat; 3 the least that the
- * cells which are not evaluated can have, INFINITY: no minimum with it is needed; 4-9 the box of
- * the shape in its cell; 10: the shape must be joined with it so that the former is true; 11 as 3,
- * for the selection of terms. */
+/* extra: 0-2 number of cells evaluated on each axis, 0: it does not repeat; 3 the lower bound of
+ * the cells that are not evaluated, INFINITY: no minimum with it is needed; 4-9 the shape's box in
+ * its cell; 10: the shape must be joined with that box to make the bound valid; 11 as 3, for the
+ * selection of terms. */
 static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int *n = s->number;
     bool limited = s->kind == SDFC_KIND_REPEAT_LIMITED;
@@ -269,8 +270,8 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     s->extra[11] = fmin(others * f->growth, 1e30);
 }
 
-/* The half-angle around +x of the wedge with its edge on the y axis that holds the box; pi: it
- * holds points on -x. */
+/* The half-angle around +x of the wedge that has its edge on the y axis and contains these bounds;
+ * pi: they contain points on -x. */
 static double angle_of_box(const sdfc_box *b) {
     double most = 0;
     if (b->low[2] <= 0 && b->high[2] >= 0 && b->low[0] <= 0) return PI;
@@ -291,7 +292,7 @@ static double angle_of(const sdfc_facts *f) {
     return fmin(angle_of_box(&f->box), angle_of_sphere(f));
 }
 
-/* Does not change with a turn about y. */
+/* Invariant under rotation about y. */
 static bool is_round(const sdfc *c, int shape) {
     const sdfc_shape *s = &c->shapes[shape];
     switch (s->kind) {
@@ -373,7 +374,7 @@ static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
         bool box_fits = angle_of_box(&f->box) <= wedge + 1e-9;
         s->extra[10] = f->growth < f->lipschitz || !box_fits;
         f->growth = f->lipschitz;
-        sdfc_sphere_of_box(f); /* it is the box that the shape is joined with */
+        sdfc_sphere_of_box(f); /* the shape is joined with this box */
     }
     if (s->extra[0] >= 2) f->cost *= s->extra[0] >= 4 ? copies : 2;
     if (count > 1) {
@@ -416,8 +417,8 @@ static void twist_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     sdfc_sphere_of_box(f);
 }
 
-/* The box of what a bend by k leaves of a box whose x is within +-x: of one k from the corners and
- * the ends of the arc, of an interval from the length of the arc. */
+/* The bounds of a curved box, x within +-x, curvature k. For a single k they follow from the
+ * corners and the ends of the arc, for an interval from the length of the arc. */
 static void bend_box(sdfc_box *b, double x, double low, double high) {
     double most = fmax(fabs(low), fabs(high)), thick = sdfc_corner(b, 1);
     double y[2] = {b->low[1], b->high[1]}, reach = x * (1 + most * thick);
@@ -442,10 +443,10 @@ static void bend_box(sdfc_box *b, double x, double low, double high) {
     }
 }
 
-/* Along an arc of radius 1 / k: stretched by 1 / (1 - k y), y across the arc, least at its inner
- * side. `outside` is the distance to the arc that the shape fills, which the box of that completes.
- * Where it exceeds `margin`, which may be small, it takes over: max(L outside, min(field, L (2
- * margin - outside))). extra: 0 L, 1 2 L margin, 2 3 middle and half thickness across, 4 5 along
+/* Along an arc of radius 1 / k. The stretch is 1 / (1 - k y), y across the arc, lowest at its inner
+ * side. `outside` is the distance to the arc segment that the shape fills, plus the distance to its
+ * box. Beyond `margin`, which can be small, it replaces the field: max(L outside, min(field, L (2
+ * margin - outside))). extra: 0 L, 1 2 L margin, 2 3 centre and half thickness across, 4 5 along
  * z */
 static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int *n = s->number;
@@ -513,7 +514,7 @@ static void kaleidoscope_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     f->cost += 8.0 * levels;
 }
 
-/* ---- all of them ---- */
+/* ---- all operators ---- */
 
 static void elongate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     double by[3];
@@ -527,8 +528,8 @@ static void elongate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     f->radius += sdfc_norm3(by);
 }
 
-/* Of the section at z = 0, which is the shape itself if it is flat. What is less steep than 1
- * would have caps that are too steep for it. */
+/* From the section at z = 0, which is the shape itself if it is flat. A section with a constant
+ * below 1 would have caps that are too steep for its constant. */
 static void extrude_facts(const sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     double h = sdfc_size_of(c, s->number[0]);
     f->box.low[2] = -h;

@@ -80,12 +80,13 @@ static sdfc_facts user_facts(sdfc *c, const sdfc_shape *s) {
     return f;
 }
 
-/* The escape-time estimate is no bound. Measured on 1e5 pairs of a point outside and one of the
- * surface, powers 2 to 16, 2 to 14 levels: divided by 2 it exceeds the distance for 1 of 10,000.
+/* The escape-time estimate is not a bound. Measured on 1e5 pairs of a point outside and a surface
+ * point, powers 2 to 16, 2 to 14 levels: divided by 2, it exceeds the distance for 1 of 10,000.
  *
- * Of one or two levels it is half the distance at the surface and at most 0.65 of it further off
- * (of 3.6 million pairs of power 8; 0.74 of 600,000 of other powers, but for one pair of power 6
- * at 1.11): there lowering takes 1.3 times the estimate, and the constant is 1. */
+ * With one or two levels it is half the distance at the surface and at most 0.65 of the distance
+ * further away (3.6 million pairs of power 8; 0.74 for 600,000 pairs of other powers, except for
+ * one pair of power 6 at 1.11). Lowering then uses 1.3 times the estimate, and the constant is
+ * 1. */
 #define MANDELBULB_LIPSCHITZ 2.0
 
 static sdfc_facts mandelbulb_facts(sdfc *c, const sdfc_shape *s) {
@@ -98,9 +99,9 @@ static sdfc_facts mandelbulb_facts(sdfc *c, const sdfc_shape *s) {
     return f; /* lowering joins it with its ball: growth 1 */
 }
 
-/* The axes along which the field does not decrease with the distance from the middle. Of convex
- * solids the distance is a convex function, which on an axis of symmetry has its minimum at 0;
- * formulas of the rest. */
+/* The axes along which the field does not decrease with the distance from the centre. The distance
+ * to a convex solid is a convex function, which has its minimum at 0 on an axis of symmetry; other
+ * solids have formulas. */
 static unsigned rising(int kind, const double least[3]) {
     bool sized = least[0] >= 0 && least[1] >= 0;
     switch (kind) {
@@ -163,7 +164,7 @@ static sdfc_facts facts_of(sdfc *c, sdfc_shape *s) {
     case SDFC_KIND_TRI_PRISM: {
         f = sdfc_solid(a, b, a * 1.1547005383792517, 3);
         f.box.low[2] = -a * 0.57735026918962584;
-        f.radius = hypot(a * 1.1547005383792517, b); /* about the middle */
+        f.radius = hypot(a * 1.1547005383792517, b); /* around the centre */
         return f;
     }
     case SDFC_KIND_LINK: return sdfc_solid(b + d, a + b + d, d, 7);

@@ -1,25 +1,23 @@
-/* box.c: the box around all listed parts at the present parameters and time. sdfc_facts knows a box
- * for all of their values at once, which is too wide to be worth a clipped ray: of a ball of radius
- * r that stands on the ground, with r from 0.2 to 1.4, it reaches from -1.2 to 2.8, and the ball
- * from 0 to 2 r.
+/* box.c: bounds of all listed parts at the current parameters and time. sdfc_facts has bounds for
+ * all values at once, which are too wide for clipping rays: for a ball of radius r that stands on
+ * the ground, with r from 0.2 to 1.4, they are -1.2 to 2.8, and the ball is from 0 to 2 r.
  *
- * So the bounds are followed as expressions where that is exact, through movements and
- * repetitions down to balls and boxes. All else has the constant bound that the analysis found,
- * and so has a scene of too many parts to have bits for them: their expressions would be the
- * most of the update's code. Only what changes becomes a slot; the update writes it once per
- * frame. */
+ * So the bounds are computed as expressions where this is exact: through translations and
+ * repetitions down to balls and boxes. Everything else has the constant bounds of the analysis, and
+ * so has a scene with too many parts for bits: the expressions would be most of the update's code.
+ * Only changing bounds become slots; the update writes them once per frame. */
 #include "sdfc/internal.h"
 
 /* One side of a box along one axis. */
 typedef struct bound {
-    int expr;     /* -1: the constant alone */
+    int expr;     /* -1: only the constant */
     double value; /* +-INFINITY: endless */
     double slack; /* what rounding in fp32 may have taken from expr */
 } bound;
 
 static int expr_of(sdfc *c, bound b) { return b.expr < 0 ? sdfc_number(c, b.value) : b.expr; }
 
-/* An expression takes the place of the constant. */
+/* Replaces the constant by an expression. */
 static bound changing(sdfc *c, int expr, double slack) {
     const sdfc_expr *e = &c->exprs[expr];
     double most = fmin(fmax(fabs(e->low), fabs(e->high)), 1e4);
@@ -43,7 +41,7 @@ static bound extent(sdfc *c, int shape, int axis, bool high) {
     bound constant = {-1, high ? s->facts.box.high[axis] : s->facts.box.low[axis], 0};
     if (c->part_count > MASU_SDFC_MASKED_MAX) return constant;
     bool repeats = s->kind == SDFC_KIND_REPEAT && s->extra[axis] != 0;
-    bool local = false; /* cells have sizes of their own */
+    bool local = false; /* cells have individual sizes */
     for (int i = 0; i < 3; i++) local = local || (s->children < 2 && c->exprs[s->number[i]].local);
     if (local) return constant;
     if (s->kind == SDFC_KIND_PAINT) return extent(c, s->child[0], axis, high);

@@ -1,15 +1,15 @@
-/* check.c: tries what the analysis claims, in double precision, on points that a fixed seed
- * gives: the same text is always judged alike.
+/* check.c: tests the results of the analysis in double precision, on points from a fixed seed: the
+ * same text always has the same result.
  *
- *   constant   |f(p) - f(q)| <= L |p - q| for pairs far apart, near each other, and, found by
- *              bisection, just left and right of the border of two cells of a repetition
- *   estimates  (fractals) within f / L of a point there is no solid
- *   bounds     outside of the box and of the sphere f is positive and at least growth * distance
- *   mirrors    what stands in mirrored sectors (polar) is its own mirror image: what is mirrored wrongly is a
- *              field as good as any, of something else
+ *   constant   |f(p) - f(q)| <= L |p - q| for distant pairs, close pairs, and pairs on both sides
+ *              of the border of two cells of a repetition, found by bisection
+ *   estimates  (fractals) there is no solid within f / L of a point
+ *   bounds     outside the box and the sphere, f is positive and at least growth * distance
+ *   mirrors    a shape in mirrored sectors (polar) equals its mirror image: a wrongly mirrored
+ *              field is a valid field, but of another shape
  *
- * Parameters are at their defaults first, then anywhere in their ranges; time likewise. A violation
- * is an error of the analysis (or of a constant that was measured), and fails the compilation. */
+ * Parameters are first at their defaults, then anywhere in their ranges; the same for time. A
+ * violation is an error of the analysis (or of a measured constant), and fails the compilation. */
 #include "sdfc/internal.h"
 
 #include <stdio.h>
@@ -18,7 +18,7 @@
 
 #define ENVIRONMENTS 16
 #define OPERATIONS_MAX 6e7 /* in all; about a second */
-#define FAR_AWAY 40.0      /* what stands for the size of something endless */
+#define FAR_AWAY 40.0      /* size used for unbounded shapes */
 
 /* ---- running ---- */
 
@@ -200,8 +200,8 @@ static void check_constant(checker *k, bool borders) {
     if (borders && cells_p != cells_q) check_border(k, p, q, cells_p);
 }
 
-/* Fractals have no Lipschitz constant. What the march needs is that no solid is nearer than f / L;
- * an estimate may break that for one point in 200. */
+/* Fractals have no Lipschitz constant. The march requires that no solid is closer than f / L; an
+ * estimate may violate this for one point in 200. */
 static void check_estimate(checker *k) {
     double p[3], way[3], q[3];
     any_point(k, p);
@@ -275,7 +275,7 @@ static void set_environment(checker *k, int environment) {
     sdfc_evaluate(k->c, k->params, k->time, k->c->values);
 }
 
-/* A shape by itself; its part has been lowered, so that lowering this much of it does not fail. */
+/* Tests one shape; its part has been lowered successfully, so lowering this subtree cannot fail. */
 static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
     checker k = {.c = c, .random = 0x6D617375};
     set_shape(&k, part, shape);

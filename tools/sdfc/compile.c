@@ -1,5 +1,5 @@
-/* compile.c: the steps of a compilation in order, and what they leave behind. Every step ends
- * by longjmp when it finds a mistake; all memory hangs on the sdfc structure and is freed here. */
+/* compile.c: the steps of a compilation in order, and their results. Every step exits by longjmp on
+ * an error; the sdfc structure owns all memory, which is freed here. */
 #include "sdfc/internal.h"
 
 #include <float.h>
@@ -74,8 +74,8 @@ void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     }
 }
 
-/* Expressions of time or parameters may have any value; what a surface knows of itself is within
- * its interval. */
+/* Expressions of time or parameters can have any value; local expressions of a surface are within
+ * their interval. */
 static double roughness_of(const sdfc *c, int material) {
     const sdfc_expr *e = &c->exprs[c->materials[material].value[3]];
     return e->op == SDFC_CONST || (e->local && !e->timed) ? fmax(e->low, 0) : 0;

@@ -1,6 +1,5 @@
-/* define.c: names that stand for more than they say: def with arguments, whose body is read anew
- * at each call, what a material knows of the place where it is asked, and the cells of a
- * repetition. */
+/* define.c: names that need an expansion: def with arguments (the body is parsed again at each
+ * call), the local variables of materials, and the cells of a repetition. */
 #include "sdfc/internal.h"
 
 #include <string.h>
@@ -28,7 +27,7 @@ static void skip_to(sdfc *c, const char *ends) {
     }
 }
 
-/* Whether the body is a shape is seen by its first word: a shape, or a def that is one. */
+/* The first token of the body decides whether the def is a shape: a shape, or a def of a shape. */
 void sdfc_parse_def(sdfc *c) {
     int name = sdfc_need_shape_name(c);
     sdfc_def d = {.symbols = c->symbol_count};
@@ -77,7 +76,7 @@ static void declare_given(sdfc *c, int token, const given *g) {
         s->value = g->value;
 }
 
-/* The "(" has been read. The body sees what was declared before it, and its arguments. */
+/* The "(" has been read. The body can use names declared before the def, and its arguments. */
 int sdfc_call_def(sdfc *c, int def, int token, sdfc_value *v) {
     const sdfc_def d = c->defs[def];
     given arguments[SDFC_ARGUMENTS_MAX];
@@ -123,7 +122,7 @@ int sdfc_call_def(sdfc *c, int def, int token, sdfc_value *v) {
     return shape;
 }
 
-/* ---- where a material is asked ---- */
+/* ---- local variables of materials ---- */
 
 bool sdfc_local_name(sdfc *c, int token, sdfc_value *v) {
     static const struct {

@@ -1,4 +1,4 @@
-/* emit_c.c: the scene's field as C in double precision: the truth that GPUs are compared with; see
+/* emit_c.c: the scene's field as C in double precision: the reference for the GPU results; see
  * emit.h. */
 #include "sdfc/emit.h"
 

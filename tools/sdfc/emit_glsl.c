@@ -1,5 +1,5 @@
-/* emit_glsl.c: the scene's field as GLSL: its parts by number, the nearest of them in any order
- * or in rising order, half-spaces in closed form, surfaces, root transforms, the update; see
+/* emit_glsl.c: the scene's field as GLSL: parts by number, the closest part in any order or in
+ * ascending order, half-spaces in closed form, surfaces, root transforms, the update; see
  * emit.h. */
 #include "sdfc/emit.h"
 
@@ -10,7 +10,7 @@ static bool any_timed(const sdfc *c) {
     return false;
 }
 
-/* Which of its terms a part is asked for: its bits, from the first on. */
+/* Selects the terms of a part to be evaluated: its bits, from the first on. */
 static void put_terms_on(sdfc_writer *w, const sdfc_group *group, bool several) {
     if (!group->term_count)
         PUT(w, "0xFFFFFFFFu");
@@ -21,8 +21,8 @@ static void put_terms_on(sdfc_writer *w, const sdfc_group *group, bool several) 
         PUT(w, "masu_term_bits(%d) >> %uu", group->first_term / 32, (unsigned)group->first_term % 32);
 }
 
-/* The last place where the arguments of a part of group g may begin: where they do begin comes
- * from data. */
+/* The last slot at which the arguments of a part of group g can begin. The actual first slot is
+ * read from data. */
 static uint32_t last_base(const sdfc *c, int g) { return c->slot_count - (uint32_t)c->groups[g].slot_count; }
 
 /* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has
@@ -50,7 +50,7 @@ static void put_part_value(sdfc_writer *w, int g, const char *name, const char *
     PUT(w, ") * masu_slot(record + 4u);\n");
 }
 
-/* How fast a half-space's field changes along d: its operations without what they add. */
+/* The derivative of a half-space's field along d: its operations without their constant terms. */
 static void put_slope(sdfc_writer *w, int group) {
     const sdfc_group *g = &w->c->groups[group];
     const sdfc_program *p = &w->c->parts[g->first_part].program;
@@ -187,8 +187,8 @@ static bool is_estimate(const sdfc *c, const sdfc_group *group) {
     return c->shapes[c->parts[group->first_part].shape].facts.estimate;
 }
 
-/* Of a scene of few parts: the bits of the part in work that matter in the ball. What only
- * estimates its distance may everywhere that its sphere may. */
+/* For a scene of few parts: the bits of the current part that matter in the ball. An estimate can
+ * matter wherever its sphere can. */
 static void put_keep(sdfc_writer *w, const sdfc_group *group) {
     bool several = group->part_count > 1;
     if (is_estimate(w->c, group))
@@ -207,7 +207,7 @@ static void put_keep(sdfc_writer *w, const sdfc_group *group) {
         PUT(w, "%uu)\n", (unsigned)group->first_term % 32);
 }
 
-/* The half-spaces count always, unless the includer meets them in closed form. */
+/* Half-spaces are always included, unless the includer intersects them in closed form. */
 static void put_flat_least(sdfc_writer *w) {
     const sdfc *c = w->c;
     if (!c->flat_parts) return;
@@ -242,9 +242,9 @@ static void put_any_order(sdfc_writer *w) {
     PUT(w, "    return d;\n}\n");
 }
 
-/* A part alone of its form. Wrong turn, once tiles alone chose parts: one question for all parts
- * that share a place, so that an angle which they have in common is computed once. Blocks of
- * pixels choose one of them. */
+/* A part that is the only one of its form. Rejected alternative: one common evaluation for all
+ * parts that share a local space, so that an angle that they have in common is computed once. It
+ * made sense while only tiles selected parts; blocks of pixels select a single part. */
 static void put_only_part(sdfc_writer *w, int g) {
     const sdfc_group *group = &w->c->groups[g];
     bool alone = w->c->part_count - w->c->flat_parts == 1;
@@ -261,9 +261,9 @@ static void put_only_part(sdfc_writer *w, int g) {
     PUT(w, "    }\n");
 }
 
-/* The parts of a form of several are found bit by bit. Wrong turn: lists of numbers in memory
- * for a few parts as well. On lavapipe each lane fetches by itself, which cost more than the
- * parts' own arithmetic. */
+/* The parts of a form with several parts are found bit by bit. Rejected alternative: lists of
+ * numbers in memory also for few parts. On lavapipe each lane fetches separately, which cost more
+ * than the parts' arithmetic. */
 static void put_masked_group(sdfc_writer *w, int g) {
     const sdfc_group *group = &w->c->groups[g];
     int first = group->first_part, end = first + group->part_count;
@@ -293,8 +293,8 @@ static bool any_estimate(const sdfc *c) {
     return false;
 }
 
-/* The part in work is read once and stays over the ends of loops; behind the last one there is
- * none, 0xFFFFFFFF. */
+/* The current part is read once and kept across the ends of loops; after the last part it is
+ * 0xFFFFFFFF. */
 static void put_listed_group(sdfc_writer *w, int g) {
     const sdfc *c = w->c;
     const sdfc_group *group = &c->groups[g];
@@ -308,8 +308,8 @@ static void put_listed_group(sdfc_writer *w, int g) {
     PUT(w, "        i = masu_next_place(i);\n        part = i < count ? masu_part_at(i) : 0xFFFFFFFFu;\n    }\n");
 }
 
-/* One loop per form: where a driver runs all arms of a switch and masks what they write, a part
- * then costs its own form and not all of them. Needs a list in rising order, or bits. */
+/* One loop per form: on a driver that executes all arms of a switch and masks their writes, a part
+ * then costs only its own form. Needs a list in ascending order, or bits. */
 static void put_ascending(sdfc_writer *w) {
     const sdfc *c = w->c;
     bool masked = c->part_count <= MASU_SDFC_MASKED_MAX;
@@ -317,7 +317,7 @@ static void put_ascending(sdfc_writer *w) {
     PUT(w, "    MASU_KEEP_NONE\n");
     if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = masu_first_place();\n"
                     "    uint part = i < count ? masu_part_at(i) : 0xFFFFFFFFu;\n");
-    /* Estimates come last: they tell nothing about others. */
+    /* Estimates come last: they give no bound for other parts. */
     for (int late = 0; late < 2; late++) {
         if (late && any_estimate(c)) PUT(w, "    float sure = d;\n");
         for (int g = 0; g < c->group_count; g++) {
@@ -337,7 +337,8 @@ static void put_ascending(sdfc_writer *w) {
 
 /* ---- root transforms ---- */
 
-/* One step, inwards or outwards. The rows of a turn are orthonormal: its transpose undoes it. */
+/* One step, inwards or outwards. The rows of a rotation are orthonormal, so its transpose is the
+ * inverse. */
 static void put_root_step(sdfc_writer *w, int group, const sdfc_root_step *step, bool out) {
     const sdfc_group *g = &w->c->groups[group];
     const sdfc_program *p = &w->c->parts[g->first_part].program;
@@ -364,7 +365,7 @@ static void put_root_step(sdfc_writer *w, int group, const sdfc_root_step *step,
     PUT(w, ");\n");
 }
 
-/* A field of the user's own may ask for time and parameters wherever it likes. */
+/* A user-defined GLSL field can use time and parameters anywhere. */
 static bool part_moves(const sdfc *c, int part) {
     const sdfc_part *p = &c->parts[part];
     if (c->shapes[p->shape].facts.user) return true;
@@ -374,8 +375,8 @@ static bool part_moves(const sdfc *c, int part) {
     return false;
 }
 
-/* Which parts change with time or parameters: what else is seen has moved with the eye alone. Of
- * more runs of numbers than a chain of questions is worth, all of them. */
+/* Which parts change with time or parameters: all other visible surfaces move only with the camera.
+ * If the runs of part numbers are too many for a chain of comparisons, all parts. */
 static void put_moving(sdfc_writer *w) {
     enum { RUNS = 16 };
     const sdfc *c = w->c;
@@ -401,8 +402,8 @@ static void put_moving(sdfc_writer *w) {
     PUT(w, runs > RUNS ? "true;\n}\n#endif\n\n" : "false;\n}\n#endif\n\n");
 }
 
-/* From the world into a part's own space, and out of it: the movements, turns and scalings that
- * stand around all else in the part. Of parts where these do not change: nothing. */
+/* Transforms from world space to a part's local space, and back: the translations, rotations and
+ * scalings at the root of the part. Nothing for parts whose root transform does not change. */
 static void put_roots(sdfc_writer *w) {
     sdfc *c = w->c;
     PUT(w, "#ifdef MASU_MOTION\nvec3 masu_sdf_root(uint part, vec3 p, bool out_of)\n{\n");
@@ -421,7 +422,7 @@ static void put_roots(sdfc_writer *w) {
     PUT(w, "    return p;\n}\n#endif\n\n");
 }
 
-/* One slot of those that depend on the anchor alone; their constants are slots themselves. */
+/* One slot that depends only on the anchor; its constants are slots too. */
 static void put_places(sdfc_writer *w) {
     PUT(w,
         "#define MASU_SDF_PLACES %d\n"

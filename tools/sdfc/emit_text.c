@@ -1,4 +1,5 @@
-/* emit_text.c: the lines that GLSL and C share; see emit.h. What no part uses is not written. */
+/* emit_text.c: the lines common to GLSL and C; see emit.h. Functions that no part uses are not
+ * written. */
 #include "sdfc/emit.h"
 
 #include <stdio.h>
@@ -50,7 +51,8 @@ static void mark_used(bool *used, int op) {
     }
 }
 
-/* What the looks of a surface are made of; the distance is wanted for the choices alone. */
+/* The variables that a surface's material depends on; the distance is needed only for the
+ * selections. */
 static bool *live_variables(sdfc *c, const sdfc_program *p) {
     const sdfc_function *f = &p->functions[p->surface];
     bool *live = sdfc_take(c, (size_t)f->count + 3, sizeof *live);
@@ -156,13 +158,13 @@ static bool is_literal(const sdfc_writer *w, const sdfc_group *g, const sdfc_pro
     return operand < 0 && g->slot_of_arg[~operand] < 0 && w->c->exprs[p->args[~operand]].value == value;
 }
 
-/* x - 0 and x * 1 with a literal: the shape that stands at the origin beside others that do not. */
+/* x - 0 and x * 1 with a literal: a shape at the origin, of a form with other shapes elsewhere. */
 static bool does_nothing(const sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
                          const sdfc_instr *i) {
     return (i->op == SDFC_sub || i->op == SDFC_mul) && is_literal(w, g, p, i->operand[1], i->op == SDFC_mul);
 }
 
-/* Rows of turns about an axis, and planes across one, are mostly zeros and ones. */
+/* Most elements of a rotation about an axis, and of a plane across one, are zeros and ones. */
 static void put_dot(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i) {
     bool any = false;
     for (int k = 0; k < 3; k++) {
@@ -177,7 +179,7 @@ static void put_dot(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, 
     PUT(w, any ? ")" : "0.0");
 }
 
-/* Whether other cells of a repetition can be left out by how far off they are. */
+/* Whether other cells of a repetition can be skipped by their distance. */
 static bool has_reach(const sdfc_writer *w, const sdfc_program *p, const sdfc_instr *i) {
     return w->glsl && i->op == SDFC_CALL_MIN && w->c->exprs[p->args[~i->operand[15]]].value > 0;
 }
@@ -196,8 +198,8 @@ static void put_bound(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p
     PUT(w, " ? %uu : 0u;\n", bits);
 }
 
-/* Which axes' neighbours are farther than what the own cell holds; of all cells not evaluated,
- * whether they may matter in the ball: then nothing is left out. */
+/* The axes whose neighbour cells are farther than the value of the own cell. If the cells that are
+ * not evaluated could matter in the ball, nothing is skipped. */
 static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i, int variable) {
     PUT(w, "        if (i == 0u) {\n");
     for (int k = 0; k < 3; k++) {
@@ -209,7 +211,7 @@ static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p
     PUT(w, "        }\n");
 }
 
-/* Of the terms of a function and of those that it calls, which stand behind it. */
+/* The bits of the terms of a function and of the functions that it calls, which follow it. */
 static unsigned bits_of(const sdfc_program *p, int function) {
     const sdfc_function *f = &p->functions[function];
     unsigned bits = 0;
@@ -351,7 +353,7 @@ static bool is_declared(const sdfc_function *f, int t) {
     return false;
 }
 
-/* Without the term its join is what it was before, or nothing. What holds others opens first. */
+/* Without the term, its join keeps its previous value, or nothing. Outer terms open first. */
 static void open_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_function *f, int k) {
     for (int t = f->term_count; t-- > 0;) {
         const sdfc_term *term = &f->terms[t];
@@ -488,9 +490,9 @@ void sdfc_put_users(sdfc_writer *w) {
 
 /* ---- slots that change ---- */
 
-/* Which expressions the GLSL needs as one float, which as two. What depends on the anchor is
- * large before it is small, and so is what it is added to: 1e6 + sin(time) in one float is off
- * by 0.06. */
+/* Which expressions the GLSL needs as one float, and which as two. Anchor-dependent expressions
+ * have large intermediate values and small results, and so do their addends: 1e6 + sin(time) in one
+ * float has an error of 0.06. */
 enum { ONE_FLOAT = 1, TWO_FLOATS = 2 };
 
 static unsigned char *find_widths(sdfc *c) {
@@ -531,7 +533,7 @@ static void put_wide(sdfc_writer *w, int e, const unsigned char *widths) {
     }
 }
 
-/* Anchored expressions are made of these operations only (lower.c). */
+/* Anchored expressions consist only of these operations (lower.c). */
 static void put_wide_expr(sdfc_writer *w, int i, const unsigned char *widths) {
     const sdfc_expr *e = &w->c->exprs[i];
     static const struct {
@@ -578,7 +580,7 @@ void sdfc_put_update(sdfc_writer *w) {
         } else if (e->op == SDFC_TIME) {
             PUT(w, "masu_time()");
         } else if (e->op == SDFC_ANCHOR) {
-            PUT(w, "0.0"); /* in C: the truth needs no anchor */
+            PUT(w, "0.0"); /* in C: the double-precision reference needs no anchor */
         } else if (sdfc_ops[e->op].text) {
             for (const char *t = sdfc_ops[e->op].text; *t; t++) {
                 if (*t == '$')

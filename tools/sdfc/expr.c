@@ -1,7 +1,7 @@
-/* expr.c: expressions of constants, parameters and time. An expression is an index into a list
- * in which operands come before what uses them, so evaluating all of them is one pass, and printing
- * the ones that are needed is another: nothing recurs. Every one carries the interval of its values
- * over all parameters and times. */
+/* expr.c: expressions of constants, parameters and time. An expression is an index into a list in
+ * which operands precede their users. So one pass evaluates the list, another prints the needed
+ * expressions, and no function is recursive. Every expression has the interval of its values over
+ * all parameters and times. */
 #include "sdfc/internal.h"
 
 #include <string.h>
@@ -50,7 +50,7 @@ int sdfc_time_expr(sdfc *c) {
     return c->time_expr;
 }
 
-/* The checker and the truth work in double precision around the origin of the world. */
+/* The checker and the C reference work in double precision around the world's origin. */
 int sdfc_anchor_expr(sdfc *c, int axis) {
     return add_expr(c, (sdfc_expr){.op = SDFC_ANCHOR,
                                    .a = {axis, 0, 0},
@@ -95,7 +95,7 @@ static interval product(interval x, interval y) {
     return r;
 }
 
-/* cos, whose extremes lie at the multiples of pi */
+/* cos, with its extrema at the multiples of pi */
 static interval cosine(interval x) {
     if (!(x.high - x.low < 2 * PI) || fabs(x.low) > 1e6) return (interval){-1, 1};
     double a = cos(x.low), b = cos(x.high);
@@ -290,7 +290,7 @@ void sdfc_evaluate(const sdfc *c, const double *params, double time, double *val
         case SDFC_NORMAL:
         case SDFC_TRAP:
         case SDFC_FOOTPRINT:
-        case SDFC_CELL: values[i] = e->value; break; /* operations, where they matter */
+        case SDFC_CELL: values[i] = e->value; break; /* operations replace it if it is evaluated */
         default:
             for (int k = 0; k < 3; k++) a[k] = values[e->a[k]];
             values[i] = sdfc_ops[e->op].run(a);

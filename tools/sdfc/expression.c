@@ -165,7 +165,7 @@ enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
 const char *sdfc_function_name(int i) { return i < FUNCTIONS ? functions[i].name : NULL; }
 
-/* Of three numbers: noise, whose octaves fade where a pixel holds more than half a period. */
+/* Noise of three numbers. An octave fades out if a pixel covers more than half of its period. */
 static int octave(sdfc *c, sdfc_value v, double factor, double turn) {
     int e[3];
     if (v.count == 2) v.e[2] = number(c, 0);

@@ -1,5 +1,5 @@
-/* facts.h: what the rules of the analysis share: the intervals of expressions, the box and the
- * sphere around a solid. See analyse.c. */
+/* facts.h: helpers for the rules of the analysis: the intervals of expressions, bounding boxes and
+ * spheres of solids. See analyse.c. */
 #ifndef MASU_SDFC_FACTS_H
 #define MASU_SDFC_FACTS_H
 
@@ -20,20 +20,21 @@ static inline int sdfc_apply1(sdfc *c, int op, int x) { return sdfc_apply(c, op,
 static inline int sdfc_apply2(sdfc *c, int op, int x, int y) { return sdfc_apply(c, op, x, y, x); }
 
 bool sdfc_bounded(const sdfc_box *b);
-/* Of the box, how far from 0 it reaches along axis i. */
+/* The largest absolute coordinate of a box along axis i. */
 double sdfc_corner(const sdfc_box *b, int i);
 double sdfc_norm3(const double v[3]);
 sdfc_box sdfc_symmetric_box(double x, double y, double z);
-/* The sphere around the box, where that is smaller. Both keep their growth. */
+/* Replaces the sphere by the one around its box, if that is smaller. Both keep their growth. */
 void sdfc_tighten(sdfc_facts *f);
 void sdfc_sphere_of_box(sdfc_facts *f);
 void sdfc_box_of_sphere(sdfc_facts *f);
 void sdfc_widen(sdfc_facts *f, double by);
 /* Around both. */
 void sdfc_join(sdfc_facts *f, const sdfc_facts *g);
-/* Distance of the box, or of the sphere if that is nearer, from an axis. */
+/* Largest distance of the bounds from an axis: that of the sphere or of its box, whichever is
+ * smaller. */
 double sdfc_reach(const sdfc_facts *f, int i, int j);
-/* Replaces a vector that is known at compile time by the unit one; else an error. */
+/* Normalises a vector of compile-time constants; other vectors are an error. */
 void sdfc_unit_vector(sdfc *c, const sdfc_shape *s, int *v, const char *what);
 
 /* A solid of constant 1 in a box around the origin, with these mirrors. */

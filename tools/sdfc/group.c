@@ -43,8 +43,8 @@ static uint32_t form_hash(const sdfc_program *p) {
     return (h ^ (uint32_t)p->arg_count) * 16777619u;
 }
 
-/* Whether the form's field is affine in the point: a half-space, however it is placed. The march
- * meets it in closed form. */
+/* Whether the form's field is affine in the point: a half-space in any position. The march
+ * intersects it in closed form. */
 static bool is_flat(const sdfc_program *p) {
     if (p->function_count != (p->surface ? 2 : 1)) return false;
     const sdfc_function *f = &p->functions[0];

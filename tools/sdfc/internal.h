@@ -1,4 +1,4 @@
-/* internal.h: what the files of the SDF compiler share; see sdfc.h. */
+/* internal.h: declarations common to the files of the SDF compiler; see sdfc.h. */
 #ifndef MASU_SDFC_INTERNAL_H
 #define MASU_SDFC_INTERNAL_H
 
@@ -39,7 +39,7 @@ enum sdfc_op {
     SDFC_CONST,
     SDFC_PARAM,
     SDFC_ANCHOR, /* a[0]: axis */
-    /* What is known where a surface is, or in a cell: never of slots, always of operations
+    /* Local to a surface point or a cell: computed from operations, never from slots
      * (lower_local.c). */
     SDFC_POINT, SDFC_WORLD, SDFC_NORMAL, SDFC_TRAP, /* a[0]: axis */
     SDFC_FOOTPRINT,
@@ -82,7 +82,7 @@ typedef enum sdfc_token_kind {
 
 typedef struct sdfc_token {
     sdfc_token_kind kind;
-    uint32_t offset, length; /* in the text; of a raw block: what is between its braces */
+    uint32_t offset, length; /* in the text; for a raw block: of the text between its braces */
     uint32_t line, column;
     double number;
     char mark; /* ':' for "..", else the character... see TOKEN_DOTS */
@@ -97,8 +97,9 @@ typedef struct sdfc_expr {
     bool timed;              /* on parameters or time */
     bool anchored;           /* on the anchor */
     bool local;              /* on where it is evaluated */
-    bool cellular, trapped;  /* on the innermost cell there, on what a fractal's levels met */
-    double slope; /* by which a local one changes with the point, at most; INFINITY: not known */
+    bool cellular, trapped;  /* on the innermost cell there, on the orbit trap of a fractal's
+                              * levels */
+    double slope; /* Lipschitz constant of a local expression in the point; INFINITY: unknown */
     double value, low, high; /* value: at the parameters' defaults and time 0 */
 } sdfc_expr;
 
@@ -108,11 +109,12 @@ typedef struct sdfc_box {
     double low[3], high[3];
 } sdfc_box;
 
-/* What is known of a field f whatever the parameters and the time:
+/* Properties of a field f that hold for all parameters and times:
+ *
  *   |f(p) - f(q)| <= lipschitz |p - q|
  *   f(p) >= growth * distance(p, box), and the same for the sphere
  *   f does not change when p is mirrored in an axis of `symmetric` (bits 1 2 4)
- *   f does not decrease with |p_i| on the axes of `rising`, which are some of these */
+ *   f does not decrease with |p_i| on the axes of `rising`, a subset of these */
 typedef struct sdfc_facts {
     double lipschitz, growth;
     sdfc_box box;
@@ -134,7 +136,7 @@ typedef struct sdfc_shape {
     int *child;
     int children;
     int user;         /* index of its glsl block */
-    int token;        /* where it stands */
+    int token;        /* position in the text */
     double extra[16]; /* constants that the analysis adds */
     sdfc_facts facts;
 } sdfc_shape;
@@ -157,7 +159,7 @@ typedef struct sdfc_kind {
 extern const sdfc_kind sdfc_kinds[SDFC_KIND_COUNT];
 static inline bool sdfc_is_join(int kind) { return kind >= SDFC_KIND_UNION && kind <= SDFC_KIND_BLEND; }
 
-/* ---- what a part becomes ---- */
+/* ---- compiled parts ---- */
 
 typedef struct sdfc_instr {
     int32_t op;
@@ -179,32 +181,34 @@ typedef struct sdfc_instr {
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 
-/* A term: operations that are left out where what they are joined to decides alone (terms.c).
- * They end with the operation that joins them; the first term of a join ends with its own value. */
+/* A term: operations that are skipped if the other operand of their join alone determines the
+ * result (terms.c). They end with the joining operation; the first term of a join ends with its own
+ * value. */
 typedef struct sdfc_term {
     int first, last; /* operations */
     int bit;         /* of its part's terms, or -1: always evaluated */
-    int before;      /* bits of the same join's terms in front of it */
+    int before;      /* number of bits of the same join's terms before it */
     int smooth;      /* the argument (~operand) that is the radius of the blend, or 0 */
     /* instead of a bit: evaluated where its other operand exceeds this argument (~operand) */
     int cap;
     bool opens;      /* the first of its join */
-    bool far; /* left out it counts as endlessly far, instead of leaving what it is joined to */
+    bool far; /* if skipped, its value is an infinite distance, instead of the join keeping its
+               * previous value */
     bool most;       /* the join takes the larger value */
-    double lipschitz; /* of it and of what it is joined to, per metre of the world */
+    double lipschitz; /* of the term and of the other operand, per metre in world space */
 } sdfc_term;
 
 typedef struct sdfc_function {
     sdfc_instr *instrs;
     int count, capacity;
-    sdfc_term *terms; /* what stands in another comes before it */
+    sdfc_term *terms; /* inner terms come before outer ones */
     int term_count, term_capacity;
     int inputs; /* the first operations: cells that it is called in */
     int result; /* operand */
     int first_variable;
 } sdfc_function;
 
-/* A step of a part's root transform: what stands around all else in it. */
+/* A step of a part's root transform, the outermost operators of the part. */
 typedef struct sdfc_root_step {
     int kind;   /* SDFC_KIND_TRANSLATE, _ROTATE or _SCALE */
     int arg[9]; /* arguments: the offset; the matrix; the factors, inverted */
@@ -229,7 +233,8 @@ typedef struct sdfc_part {
     sdfc_program program;
     int group;
     uint32_t slot_base;
-    bool moves; /* as a whole: its sphere moves along, instead of holding all its places */
+    bool moves; /* the part moves as a whole: its sphere moves with it, instead of containing all
+                 * its positions */
     int moving_center[3]; /* expressions */
     double moving_radius;
 } sdfc_part;
@@ -247,7 +252,7 @@ typedef struct sdfc_group {
 typedef struct sdfc_material {
     char name[MASU_SDFC_NAME_MAX];
     int value[MASU_SDFC_MATERIAL_SLOTS];
-    bool local, cellular; /* depends on where it is asked, on the innermost cell */
+    bool local, cellular; /* depends on the point of evaluation, on the innermost cell */
 } sdfc_material;
 
 typedef struct sdfc_value {
@@ -286,8 +291,9 @@ typedef struct sdfc_symbol {
     int index;
 } sdfc_symbol;
 
-/* A slot that is a constant sum of the anchor's coordinates, taken modulo a period where that is
- * not 0. As data: a scene has thousands of them, and as code no optimiser comes to an end. */
+/* A slot that is a constant sum of the anchor's coordinates, modulo a period if that is not 0.
+ * Stored as data: a scene has thousands of them, and as code they would take an optimiser too
+ * long. */
 typedef struct sdfc_place {
     uint32_t slot;
     double factor[3], term, period, inverse;
@@ -321,7 +327,7 @@ typedef struct sdfc {
     bool in_material;
     int first_token, first_symbol; /* of the statement that is read */
     int cells; /* repetitions with a name */
-    bool any_cell; /* a shape is lowered outside of its own: any will do */
+    bool any_cell; /* a shape is lowered outside its cell: any cell is valid */
     sdfc_token *tokens;
     int token_count, token_capacity;
     int at; /* the token looked at */
@@ -354,7 +360,7 @@ typedef struct sdfc {
     int flat_parts;          /* the last ones */
     int term_bits;           /* of all parts, behind the bits of the parts */
     int box[2][3];           /* low and high side of the listed parts: expressions, or -1 */
-    uint32_t box_slot[2][3]; /* of those that change */
+    uint32_t box_slot[2][3]; /* of the changing sides */
     uint32_t *dynamic_slots; /* pairs: slot, expression */
     int dynamic_count, dynamic_capacity;
     sdfc_place *places; /* behind all other slots, from place_base on */
@@ -377,7 +383,7 @@ void sdfc_lex(sdfc *c);
 
 enum { SDFC_NAMES_SHAPES = 1, SDFC_NAMES_NUMBERS = 2, SDFC_NAMES_MATERIALS = 4 };
 void sdfc_report(sdfc *c, uint32_t line, uint32_t column, uint32_t offset, const char *message);
-/* As sdfc_expected, with the most similar name of these kinds. */
+/* Like sdfc_expected, with the most similar name of these kinds. */
 SDFC_NORETURN void sdfc_unknown(sdfc *c, int token, unsigned kinds, const char *what);
 /* Reports at a token and gives up; "expected WHAT, found THE TOKEN" */
 SDFC_NORETURN void sdfc_fail(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
@@ -408,7 +414,8 @@ static inline bool sdfc_is(const sdfc *c, int e, double value) {
 }
 
 int sdfc_leaf(sdfc *c, int op, int a, int b, double low, double high); /* a local one */
-/* Of a pixel in the units of e, 0 if not known; how much is left of noise there. */
+/* The footprint of a pixel in the units of e, 0 if unknown; the remaining amplitude of noise
+ * there. */
 int sdfc_footprint(sdfc *c, int e);
 int sdfc_fade(sdfc *c, const int e[3]);
 
@@ -421,7 +428,7 @@ void sdfc_parse_def(sdfc *c);
 /* Returns the shape, or fills in the value. */
 int sdfc_call_def(sdfc *c, int def, int token, sdfc_value *v);
 bool sdfc_begins_shape(sdfc *c);
-/* p, n, ... where a material is described */
+/* p, n, ... in a material description */
 bool sdfc_local_name(sdfc *c, int token, sdfc_value *v);
 sdfc_value sdfc_parse_cell(sdfc *c, int token, const sdfc_symbol *s); /* .hash(0) */
 
@@ -460,16 +467,16 @@ bool sdfc_root_moves(const sdfc *c, const sdfc_program *p);
 void sdfc_group_parts(sdfc *c);  /* by form, and orders them */
 void sdfc_assign_slots(sdfc *c); /* after that */
 void sdfc_assign_terms(sdfc *c);                 /* bits, of a scene of few parts */
-bool sdfc_any_rough(const sdfc *c); /* fractals, what is steep, what nobody knows */
+bool sdfc_any_rough(const sdfc *c); /* fractals, steep fields, and fields with unknown properties */
 uint32_t sdfc_term_word(const sdfc *c, int word); /* the bits of terms in it */
-/* of all bits, or of places in a list; 0: nothing to choose */
+/* number of values for all bits, or for positions in a list; 0: no selection */
 uint32_t sdfc_block_words(const sdfc *c);
 void sdfc_emit(sdfc *c);
 void sdfc_check(sdfc *c, uint32_t pairs);
 /* Warns of parts that a camera is inside of. */
 void sdfc_check_cameras(sdfc *c, const masu_sdfc_camera *cameras, uint32_t count);
-void sdfc_start(sdfc *c); /* what is not 0 in an empty one */
-void sdfc_free_program(sdfc_program *p); /* what it holds */
+void sdfc_start(sdfc *c); /* initialises the fields that do not start at 0 */
+void sdfc_free_program(sdfc_program *p); /* frees its contents */
 void sdfc_free(sdfc *c);                 /* and all it has taken */
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells);
 /* The same with room for the program's variables. */

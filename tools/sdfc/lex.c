@@ -1,5 +1,5 @@
-/* lex.c: text -> tokens, those of included files in the place of their names; and the growing
- * arrays of a compilation. */
+/* lex.c: text -> tokens, with included files expanded in place; and the growing arrays of a
+ * compilation. */
 #include "sdfc/internal.h"
 #include "image.h"
 
@@ -25,7 +25,7 @@ void *sdfc_grow(sdfc *c, void *array, int count, int *capacity, size_t size, int
     if (count < *capacity) return array;
     if (count >= most) {
         int token = c->at < c->token_count ? c->at : c->token_count - 1;
-        c->in_statement = false; /* what follows would be too much as well */
+        c->in_statement = false; /* the following statements would exceed the limit too */
         sdfc_fail(c, token < 0 ? 0 : token, "more than %d %s", most, what);
     }
     int more = *capacity ? 2 * *capacity : 16;
@@ -150,7 +150,7 @@ static void read_number(sdfc *c, cursor *k) {
     k->at = end;
 }
 
-/* What is between the braces, as it stands. */
+/* The text between the braces, unchanged. */
 static void read_block(sdfc *c, cursor *k) {
     cursor open = *k;
     uint32_t column = k->at - k->line_start + 1;
@@ -168,14 +168,14 @@ static void read_block(sdfc *c, cursor *k) {
 
 static void lex_file(sdfc *c, int file, int depth);
 
-/* The path beside the file that names it. */
+/* The path relative to the folder of the including file. */
 static void path_beside(const char *from, const char *name, int length, char out[256]) {
     const char *slash = strrchr(from, '/');
     int folder = slash ? (int)(slash - from) + 1 : 0;
     snprintf(out, 256, "%.*s%.*s", folder, from, length, name);
 }
 
-/* include "NAME"; each file once, its tokens in the place of this. */
+/* include "NAME"; each file once, its tokens replace this statement. */
 static void read_include(sdfc *c, cursor *k, int file, int depth) {
     uint32_t column = k->at - k->line_start + 1;
     skip_blanks(c, k);

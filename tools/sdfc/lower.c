@@ -1,13 +1,13 @@
-/* lower.c: a part's tree of shapes becomes functions of straight-line operations on numbers.
- * Points travel from the outside in as three variables, distances come back as one. What a
- * parameter of the scene or a literal of the text contributes is an argument, by number: two parts
- * with the same operations and different arguments share their code (group.c).
+/* lower.c: converts a part's tree of shapes to functions of straight-line operations on numbers.
+ * Points are passed inwards as three variables, distances return as one. A scene parameter or a
+ * literal of the text is an argument, by number: two parts with the same operations and different
+ * arguments share their code (group.c).
  *
- * In an anchored scene the GLSL's points are relative to an anchor, which may be a million metres
- * from the origin. So a point carries an offset that is still to be added to it, at first the
- * anchor: movements, turns, scalings and endless repetitions change the offset and not the point,
- * and what needs true coordinates adds it up. By then it is small, since what one sees stands near
- * the anchor. The offset's expressions are evaluated in two floats each (shared/wide.glsl). */
+ * In an anchored scene, the GLSL's points are relative to an anchor, which can be a million metres
+ * from the origin. So a point has an offset that has not been added yet, initially the anchor.
+ * Translations, rotations, scalings and unbounded repetitions change the offset and not the point;
+ * operators that need absolute coordinates add it. By then it is small, because visible objects are
+ * near the anchor. The offset's expressions are evaluated in two floats each (shared/wide.glsl). */
 #include "sdfc/lower.h"
 
 #include <stdlib.h>
@@ -70,7 +70,7 @@ int sdfc_offset_of(sdfc_lowering *l, const sdfc_point *p, int axis) {
     return p->offset[axis] ? p->offset[axis] - 1 : sdfc_number(l->c, 0);
 }
 
-/* What is to be subtracted from a coordinate. */
+/* The value to be subtracted from a coordinate. */
 int sdfc_against(sdfc_lowering *l, const sdfc_point *p, int axis) {
     return sdfc_apply(l->c, SDFC_neg, sdfc_offset_of(l, p, axis), 0, 0);
 }
@@ -135,13 +135,14 @@ static bool is_ground(const sdfc *c, const sdfc_shape *moved) {
     return fabs(sqrt(squared) - r) < r / 8;
 }
 
-/* Which forms hand an offset on, instead of having it added first. A turn or a factor that changes
- * is known to 24 bits only: more bits of its product with the offset would say nothing. */
+/* Which forms pass an offset on, instead of having it added first. A changing rotation or factor
+ * has only 24 bits of precision: more bits of its product with the offset would be meaningless. */
 static bool hands_offset_on(const sdfc *c, const sdfc_shape *s) {
     switch (s->kind) {
     case SDFC_KIND_ROTATE:
     case SDFC_KIND_ROTATE_EULER: return !any_timed(c, s->number, 9);
-    case SDFC_KIND_REPEAT: return !s->cell; /* the number of a cell is of the true place */
+    case SDFC_KIND_REPEAT: return !s->cell; /* the number of a cell depends on the absolute
+                                             * position */
     case SDFC_KIND_TRANSLATE:
     case SDFC_KIND_PAINT:
     case SDFC_KIND_PLANE:
@@ -167,7 +168,7 @@ static bool hands_offset_on(const sdfc *c, const sdfc_shape *s) {
     }
 }
 
-/* The child as a function of its own, since it is called at several points. They share `offset`. */
+/* The child as a separate function, because it is called at several points. They share `offset`. */
 int sdfc_child_function(sdfc_lowering *l, int shape, bool join_box, const sdfc_shape *owner,
                           const int offset[3]) {
     int before = sdfc_open_function(l), function = l->function, cells = l->cells;
@@ -211,7 +212,7 @@ int sdfc_child_function(sdfc_lowering *l, int shape, bool join_box, const sdfc_s
     return function;
 }
 
-/* The distance to all of it, where no cell that was looked at is near. */
+/* The distance to the bounds of all cells, if no evaluated cell is near. */
 int sdfc_capped(sdfc_lowering *l, int d, int least, const sdfc_facts *f, sdfc_point p) {
     int ends = 0, axis = 0, at[3] = {p.x, p.y, p.z};
     int e[6], cap = least, first = l->program->functions[l->function].count;
@@ -245,7 +246,7 @@ int sdfc_capped(sdfc_lowering *l, int d, int least, const sdfc_facts *f, sdfc_po
 
 /* ---- the root transform ---- */
 
-/* Arguments `first` on, `count` of them; count 1: the one stands for three. */
+/* Arguments `first` on, `count` of them; count 1: one value for all three. */
 static void add_root_step(sdfc_lowering *l, int kind, int first, int count) {
     sdfc_program *p = l->program;
     p->root = sdfc_grow(l->c, p->root, p->root_count, &p->root_capacity, sizeof *p->root,
@@ -267,8 +268,8 @@ bool sdfc_root_moves(const sdfc *c, const sdfc_program *p) {
     return false;
 }
 
-/* What the offset has gathered is a movement too. At the end of the root transform it needs no
- * arguments where nothing of all this changes with time: nothing has moved. */
+/* The accumulated offset is a translation too. At the end of the root transform it needs no
+ * arguments if none of it changes with time. */
 static void gather_root(sdfc_lowering *l, const sdfc_point *p, bool ends) {
     if (!sdfc_has_offset(p)) return;
     bool timed = !ends || sdfc_root_moves(l->c, l->program);

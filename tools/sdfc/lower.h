@@ -1,10 +1,10 @@
-/* lower.h: what writes the operations of a part; see lower.c.
+/* lower.h: writers of a part's operations; see lower.c.
  *
- *   lower.c             points and offsets, movements, all that changes one shape
- *   lower_repeat.c      repetitions and what stands around an axis
+ *   lower.c             points and offsets, translations, operators with one child
+ *   lower_repeat.c      repetitions and rotational symmetry
  *   lower_join.c        unions, cuts, blends
  *   lower_primitive.c   shapes without children
- *   lower_local.c       materials that are not the same everywhere, and the cells that shapes stand in */
+ *   lower_local.c       materials that vary over the surface, and the cells around shapes */
 #ifndef MASU_SDFC_LOWER_H
 #define MASU_SDFC_LOWER_H
 
@@ -17,7 +17,7 @@ typedef struct sdfc_point {
     int offset[3]; /* expressions + 1, to be added; 0: nothing */
 } sdfc_point;
 
-/* What a shape looks like where it is asked: operands. */
+/* The material values of a shape at the point of evaluation: operands. */
 typedef struct sdfc_look {
     bool painted;
     int value[MASU_SDFC_MATERIAL_SLOTS];
@@ -27,24 +27,24 @@ typedef struct sdfc_lowering {
     sdfc *c;
     sdfc_program *program;
     int function; /* being written */
-    bool root;    /* no shape but movements, turns and scalings has been met */
-    double stretch; /* metres here for one of the world, at most; 0: not known */
-    /* axes that jump from cell to cell: what is alike on both sides alone is continuous */
+    bool root;    /* only translations, rotations and scalings so far */
+    double stretch; /* local metres per metre in world space, at most; 0: unknown */
+    /* axes with a jump between cells: only functions that are equal on both sides are continuous */
     unsigned folded;
     bool at_fold;    /* nothing has been done to the point since */
-    /* of a repetition that looks at several: what is left out of a cut makes a cell nearer */
+    /* in a repetition that evaluates several cells: skipping a cut's operand makes a cell closer */
     bool in_cells;
     /* that it stands in; operands: of sectors their number */
     int cell[SDFC_CELLS_DEEP], seed[SDFC_CELLS_DEEP], cells;
     bool sector[SDFC_CELLS_DEEP];
     /* of the function that makes materials */
     bool surface;
-    bool shallow; /* it asks nothing of the shape, only of the part's own space */
-    int material; /* of what is not painted */
+    bool shallow; /* it needs only the part's own space, not the shape */
+    int material; /* of unpainted surfaces */
     sdfc_look look, plain;
-    sdfc_point own, world, here; /* of the part; of all; of what is painted */
-    double scale;                /* metres here for one of the world */
-    int fractal;                 /* the shape whose levels are asked, or -1 */
+    sdfc_point own, world, here; /* of the part; of the scene; of the painted shape */
+    double scale;                /* local metres per metre in world space */
+    int fractal;                 /* the shape whose levels are evaluated, or -1 */
     sdfc_point fractal_at;
 } sdfc_lowering;
 
@@ -62,7 +62,7 @@ int sdfc_against(sdfc_lowering *l, const sdfc_point *p, int axis);
 sdfc_point sdfc_settled(sdfc_lowering *l, sdfc_point p);
 int sdfc_relative(sdfc_lowering *l, const sdfc_point *p, int axis, double value);
 
-/* The distance at p; in l->look what it looks like, if that is asked. */
+/* The distance at p; writes the material values to l->look, if they are requested. */
 int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p);
 int sdfc_lower_whole(sdfc_lowering *l, int shape, sdfc_point p);
 int sdfc_lower_primitive(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p);
@@ -81,9 +81,9 @@ void sdfc_add_term(sdfc_lowering *l, const sdfc_shape *s, int child, int first, 
 /* ---- lower_local.c ---- */
 
 int sdfc_lower_expr(sdfc_lowering *l, int expr); /* of a local one: an operand */
-/* The look of a material at p, where the shape has been lowered. */
+/* The values of a material at p, after the shape has been lowered. */
 sdfc_look sdfc_lower_material(sdfc_lowering *l, int material, sdfc_point p);
-/* a and, as much as `share` says, b */
+/* a and b, mixed; `share` is the weight of b */
 sdfc_look sdfc_mixed_look(sdfc_lowering *l, sdfc_look a, sdfc_look b, int share, bool whole);
 /* The function that makes the materials of a part, if its material is not the same everywhere. */
 void sdfc_lower_surface(sdfc *c, sdfc_part *part);

@@ -1,7 +1,7 @@
 /* lower_join.c: unions, cuts and blends become operations; see lower.c. */
 #include "sdfc/lower.h"
 
-/* The next operand e of a join that is d so far: its value, and how much of it the look holds. */
+/* Joins the next operand e to d, the value of the operands so far. */
 static int join(sdfc_lowering *l, const sdfc_shape *s, int d, int e, int k, int inverse) {
     switch (s->kind) {
     case SDFC_KIND_UNION: return OP(l, min, d, e);
@@ -19,7 +19,7 @@ static int join(sdfc_lowering *l, const sdfc_shape *s, int d, int e, int k, int 
 static sdfc_look joined_look(sdfc_lowering *l, const sdfc_shape *s, int d, int e, int k, int inverse, sdfc_look a,
                              sdfc_look b) {
     bool cut = s->kind == SDFC_KIND_DIFFERENCE || s->kind == SDFC_KIND_SMOOTH_DIFFERENCE;
-    if (cut && !b.painted) return a; /* the cut shows what is cut */
+    if (cut && !b.painted) return a; /* a cut shows the material of the cut shape */
     if (!a.painted && !b.painted) return a;
     switch (s->kind) {
     case SDFC_KIND_INTERSECTION: return sdfc_mixed_look(l, a, b, OP(l, less, d, e), true);
@@ -33,9 +33,9 @@ static sdfc_look joined_look(sdfc_lowering *l, const sdfc_shape *s, int d, int e
     }
 }
 
-/* All operands at once, so that their order does not matter: see blend_two in library_joins.inc.
- * An operand that is farther than those before it by the radius has no share, to the bit: it is
- * a term. */
+/* All operands at once, so that their order does not matter: see blend_two in library_joins.inc. An
+ * operand that is farther than the previous ones by the radius has a weight of exactly 0: it is a
+ * term. */
 static int lower_blend(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     int f[SDFC_CHILDREN_MAX] = {0}, n = s->children;
     sdfc_look looks[SDFC_CHILDREN_MAX] = {{0}};
@@ -66,7 +66,7 @@ static int lower_blend(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     if (!l->surface) return t;
     int sum = OP(l, hinge, zero, f[0], t, inverse);
     sdfc_look look = looks[0];
-    for (int i = 1; i < n; i++) { /* the look so far weighs what its operands do */
+    for (int i = 1; i < n; i++) { /* the accumulated material has the weight of its operands */
         sum = OP(l, hinge, sum, f[i], t, inverse);
         look = sdfc_mixed_look(l, look, looks[i], OP(l, share_blend, sum, f[i], t, inverse), false);
     }

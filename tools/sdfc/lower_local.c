@@ -1,8 +1,8 @@
-/* lower_local.c: what depends on where it is asked. Expressions of the cell that a shape stands
- * in become operations of the shape's function. Materials of such expressions, and those that
- * are painted on parts of a shape, become a second function of the part: it goes the same way as
- * the first, keeps to the nearest of several cells, and mixes looks where shapes blend. The
- * march never calls it. See lower.c. */
+/* lower_local.c: expressions that depend on the point of evaluation. Expressions of a shape's cell
+ * become operations of the shape's function. Materials with such expressions, and materials painted
+ * on parts of a shape, become a second function of the part: it has the same control flow as the
+ * first, selects the closest of several cells, and mixes materials where shapes blend. The march
+ * never calls it. See lower.c. */
 #include "sdfc/lower.h"
 
 #include <string.h>
@@ -97,7 +97,7 @@ sdfc_look sdfc_lower_material(sdfc_lowering *l, int material, sdfc_point p) {
     return look;
 }
 
-/* Of what is not painted: the part's material, in the part's own space. */
+/* For unpainted surfaces: the part's material, in the part's own space. */
 static sdfc_look plain_look(sdfc_lowering *l) {
     if (!l->plain.painted) l->plain = sdfc_lower_material(l, l->material, l->own);
     return l->plain;

@@ -40,7 +40,7 @@ int sdfc_lower_ground(sdfc_lowering *l, const int c[3], int radius, sdfc_point p
     int at[3], k = sdfc_apply(l->c, SDFC_neg, sdfc_apply(l->c, SDFC_mul, radius, radius, 0), 0, 0);
     for (int i = 0; i < 3; i++) {
         k = sdfc_apply(l->c, SDFC_add, k, sdfc_apply(l->c, SDFC_mul, c[i], c[i], 0), 0);
-        at[i] = sdfc_argument(l, c[i]); /* in the places of a translation's */
+        at[i] = sdfc_argument(l, c[i]); /* in the slots of a translation */
     }
     int excess = sdfc_argument(l, k);
     return OP(l, ground_sphere, p.x, p.y, p.z, at[0], at[1], at[2], excess, sdfc_argument(l, radius));

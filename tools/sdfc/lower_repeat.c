@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-/* What the function of a cell is told: the coordinates before the fold and 1 / period, and the
- * cells around. */
+/* Passes inputs to the function of a cell: the coordinates before the fold and 1 / period, and the
+ * surrounding cells. */
 static void add_names(sdfc_lowering *l, const sdfc_shape *s, const int in[3], int out[9]) {
     int none = s->cell || l->cells ? sdfc_literal(l, 0) : 0;
     for (int i = 0; i < 9; i++) out[i] = none;
@@ -41,7 +41,7 @@ static int lower_alone(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, unsi
     return d;
 }
 
-/* Of a surface: the shape in the cell whose number the last operation has found. */
+/* For a surface: the shape in the cell whose number the last operation has found. */
 static int lower_nearest(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, int nearest) {
     const sdfc_function *f = &l->program->functions[l->function];
     const sdfc_instr call = f->instrs[f->count - 1];
@@ -67,7 +67,7 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     for (int i = 0; i < 3; i++) {
         if (s->extra[i] != 0) rest.offset[i] = 0;
         if (s->extra[i] == 0) p.offset[i] = 0;
-        if (!p.offset[i]) continue; /* whole periods of it do not matter */
+        if (!p.offset[i]) continue; /* whole periods have no effect */
         p.offset[i] =
             1 + sdfc_apply(l->c, SDFC_fold, p.offset[i] - 1, s->number[i], s->number[3 + i]);
     }
@@ -81,7 +81,7 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
         int half = 0, shift = 0;
         if (limited) {
             half = sdfc_literal(l, (s->whole[i] - 1) / 2.0);
-            shift = sdfc_literal(l, s->whole[i] % 2 ? 0 : 0.5); /* where the middle of a cell is */
+            shift = sdfc_literal(l, s->whole[i] % 2 ? 0 : 0.5); /* the centre of a cell */
             if (s->extra[i] < 4) cell[i][0] = OP(l, fold_row, in[i], period, inverse, half, shift);
         } else {
             cell[i][0] = OP(l, fold, in[i], period, inverse);
@@ -148,14 +148,14 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     return isfinite(s->extra[3]) ? sdfc_capped(l, d, sdfc_literal(l, s->extra[3]), &s->facts, p) : d;
 }
 
-/* Into half a sector around +x, of a shape that is its own mirror image in z: reflections alone,
- * each of which halves the angle that is left, counted in half sectors. A turn by an angle that
- * was found takes 3 to 5 times as much. */
+/* Folds into half a sector around +x, for a shape that is symmetric in z: only reflections, each of
+ * which halves the remaining angle, counted in half sectors. A rotation by a computed angle costs 3
+ * to 5 times as much. */
 static sdfc_point fold_sectors(sdfc_lowering *l, int count, sdfc_point p) {
     const double pi = 3.14159265358979323846;
     p.z = OP(l, abs, p.z);
     for (int left = count; left > 1;) {
-        left = (left + 1) / 2; /* what lies beyond that angle is mirrored there */
+        left = (left + 1) / 2; /* everything beyond that angle is mirrored into it */
         if (2 * left == count) {
             p.x = OP(l, abs, p.x);
         } else if (4 * left == count) {

@@ -1,7 +1,6 @@
-/* message.c: what is said of a mistake: its place, the line, a caret, the signature of the shape
- * whose arguments are being read, the call that led there, and the known name that is most like
- * an unknown one. A mistake in a statement does not end the reading: the next statement is tried
- * (parse.c). */
+/* message.c: formats error messages: position, line, a caret, the signature of the shape whose
+ * arguments are being parsed, the call stack, and the known name that is most similar to an unknown
+ * one. An error in a statement does not end the parsing: the next statement is parsed (parse.c). */
 #include "sdfc/internal.h"
 
 #include <stdio.h>
@@ -25,8 +24,8 @@ static const char *file_of(const sdfc *c, uint32_t offset) {
     return c->name;
 }
 
-/* "name:line:column: message", the line, and a caret below the column, behind what was said
- * before. */
+/* Appends "name:line:column: message", the line, and a caret below the column to the previous
+ * messages. */
 void sdfc_report(sdfc *c, uint32_t line, uint32_t column, uint32_t offset, const char *message) {
     char head[64], *out = c->error;
     size_t length = c->error_length, size = c->error_size;

@@ -2,8 +2,8 @@
  * precision, and as text. The names that GLSL has and C lacks are made up for below. */
 #include "sdfc/internal.h"
 
-/* The C that GLSL's built-in functions and shared/guard.glsl stand for: once compiled here, once as
- * the beginning of every truth file. */
+/* C versions of GLSL's built-in functions and shared/guard.glsl: compiled here, and also the
+ * beginning of every generated C reference. */
 #define PRELUDE(...)                                                                               \
     __VA_ARGS__                                                                                    \
     static const char prelude_text[] = #__VA_ARGS__;

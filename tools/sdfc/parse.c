@@ -1,6 +1,6 @@
-/* parse.c: statements (the grammar is in docs/sdf.md). A loop is run while it
- * is read: its body's tokens are read once per round, so the rest of the compiler knows no loops.
- * What bounds the work: tokens read, rounds included; depth of nesting; names. */
+/* parse.c: statements (the grammar is in docs/sdf.md). A loop runs during parsing: its body's
+ * tokens are read once per iteration, so the later stages have no loops. Limits on the work: tokens
+ * read, iterations included; nesting depth; names. */
 #include "sdfc/internal.h"
 
 #include <stdio.h>
@@ -81,7 +81,8 @@ static bool reserved(const sdfc *c, int token) {
     return false;
 }
 
-/* What is called: then numbers and materials may have such a name. */
+/* Whether a function or a shape has this name. Numbers and materials can have it too, because they
+ * are not called. */
 static bool is_called(const sdfc *c, int token) {
     const char *function;
     for (int i = 0; (function = sdfc_function_name(i)); i++) {
@@ -343,7 +344,7 @@ static void skip_statement(sdfc *c, int first) {
     c->at = at;
 }
 
-/* What the statement at `first` would have declared is known to be wrong. */
+/* Marks the name that the statement at `first` would have declared as erroneous. */
 static void recover(sdfc *c, int first, int symbols) {
     enum { ERRORS_MAX = 16 };
     int name = first + 1 < c->token_count ? first + 1 : first;
@@ -374,7 +375,7 @@ static void parse_whole_text(sdfc *c) {
     c->in_statement = false;
 }
 
-/* What no part names stands at the end: grey. */
+/* Parts without a material get a grey default, the last material. */
 void sdfc_parse(sdfc *c) {
     c->open_kind = c->call_token = -1;
     parse_whole_text(c);

@@ -1,24 +1,24 @@
 /* sdfc.h: the SDF compiler: the text of a scene (docs/sdf.md) becomes GLSL for the march, C in
- * double precision that says the truth, and a table of parts with Lipschitz constants and bounds.
+ * double precision as the reference, and a table of parts with Lipschitz constants and bounds.
  *
  *   sdfc.c           the program masu-sdfc
- *   lex.c       text -> tokens, of included files too
- *   message.c   what is said of mistakes
- *   parse.c     statements
- *   expression.c  expressions as they are written
- *   define.c    def, and what materials know of the place
- *   shape.c     shapes as they are written; kinds.inc is their table
- *   expr.c      expressions: folding, intervals, values
- *   ops.c       the formulas of library.inc, as C and as text
- *   analyse.c   Lipschitz constant and bounds of each operator
- *   lower.c     a tree of shapes -> a straight list of operations
- *   terms.c     which of them can be left out where they do not matter, by which bit
- *   emit.c      that list -> GLSL, C, JSON
- *   check.c     that list, run: constants and bounds tried on random points
- *   field.c     and kept, for who wants to know the field somewhere
+ *   lex.c            text -> tokens, with included files
+ *   message.c        error messages
+ *   parse.c          statements
+ *   expression.c     expressions in the text
+ *   define.c         def, and the local variables of materials
+ *   shape.c          shapes in the text; kinds.inc is their table
+ *   expr.c           expressions: folding, intervals, values
+ *   ops.c            the formulas of library.inc, as C and as text
+ *   analyse.c        Lipschitz constant and bounds of each operator
+ *   lower.c          a tree of shapes -> a straight list of operations
+ *   terms.c          which operations can be skipped if they do not matter, and the bits for it
+ *   emit.c           that list -> GLSL, C, JSON
+ *   check.c          that list, run: constants and bounds tested on random points
+ *   field.c          that list, kept for callers that evaluate the field
  *
- * Any bytes are a valid question: the answer is a result or a message. Memory and time are bounded
- * by the limits below. Nothing is global. */
+ * Any bytes are valid input: the result is code or a message. Memory and time are bounded by the
+ * limits below. There is no global state. */
 #ifndef MASU_SDFC_H
 #define MASU_SDFC_H
 
@@ -70,12 +70,12 @@ typedef struct masu_sdfc_result {
     uint32_t param_count;
     float *slots; /* initial values: parameters at their defaults, time 0 */
     uint32_t slot_count;
-    uint32_t block_words; /* that say what of the field matters in a block of pixels, at most
-                             MASU_SDFC_BLOCK_WORDS_MAX; 0: it is one whole */
+    uint32_t block_words; /* that specify which parts of the field matter in a block of pixels, at
+                           * most MASU_SDFC_BLOCK_WORDS_MAX; 0: the field is one whole */
     bool dynamic;     /* slots depend on parameters or time */
     bool timeless;    /* no expression uses time; GLSL of a block may */
     bool anchored;    /* slots depend on the anchor */
-    double glossiest; /* least roughness that a part which does not shine may have; 1: all do */
+    double glossiest; /* lowest roughness of a part without emission; 1: all parts emit */
 } masu_sdfc_result;
 
 /* A point of a camera's path. */
@@ -103,19 +103,19 @@ void masu_sdfc_release(masu_sdfc_result *result);
 /* The table of shapes, as docs/sdf-shapes.md. */
 bool masu_sdfc_put_shapes(FILE *to);
 
-/* The same scene as a function of a point, with parameters at their defaults and time 0. NULL: what
- * masu_sdfc_compile refuses. The text must outlive it. */
+/* The same scene as a function of a point, with parameters at their defaults and time 0. NULL if
+ * masu_sdfc_compile rejects the text. The text must outlive it. */
 typedef struct masu_sdfc_field masu_sdfc_field;
 masu_sdfc_field *masu_sdfc_field_open(const char *text, size_t bytes, const char *name);
 void masu_sdfc_field_close(masu_sdfc_field *field);
 const masu_sdfc_part *masu_sdfc_field_parts(const masu_sdfc_field *field, uint32_t *count);
 /* Numbers that a thread brings for masu_sdfc_field_run to work in. */
 size_t masu_sdfc_field_room(const masu_sdfc_field *field);
-/* Of one part, which must not be of a glsl block (`user`): at most `lipschitz` times the
+/* The field of one part, which must not be a glsl block (`user`): at most `lipschitz` times the
  * distance. */
 double masu_sdfc_field_run(const masu_sdfc_field *field, uint32_t part, const double p[3], double *room);
-/* What it looks like at p, with a normal and the width of a pixel there: albedo, roughness,
- * emissive, metallic. */
+/* Its material at p, for a normal and the width of a pixel there: albedo, roughness, emissive,
+ * metallic. */
 void masu_sdfc_field_material(const masu_sdfc_field *field, uint32_t part, const double p[3], const double n[3],
                               double width, double *room, double out[MASU_SDFC_MATERIAL_SLOTS]);
 

@@ -24,7 +24,7 @@ static void set_children(sdfc *c, int shape, const int *children, int count) {
     c->shapes[shape].children = count;
 }
 
-/* Limits of compile-time integers by kind and place. */
+/* Limits of compile-time integers by kind and index. */
 static long whole_most(int kind, int place) {
     switch (kind) {
     case SDFC_KIND_MENGER: return 8;
@@ -151,7 +151,7 @@ static void parse_argument(sdfc *c, char kind_of, sdfc_shape *s, int *numbers, i
     }
 }
 
-/* "as NAME": its cells are known by that name in the shape. */
+/* "as NAME": the shape can use its cells by that name. */
 static void parse_cell_name(sdfc *c, sdfc_shape *s) {
     if (!sdfc_word(c, "as")) return;
     int name = sdfc_need_name(c, "a name", true);

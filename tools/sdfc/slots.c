@@ -1,7 +1,7 @@
-/* slots.c: where in a scene's array of floats its numbers lie, and what is in them at first: a
- * record per part, the materials, and the arguments by which parts of one form differ. Those
- * that change are listed with their expressions; of an anchored scene, those that are sums of
- * the anchor's coordinates become data (sdfc_place). */
+/* slots.c: layout and initial values of a scene's array of floats: a record per part, the
+ * materials, and the arguments that differ between parts of one form. Slots that change are listed
+ * with their expressions. In an anchored scene, slots that are sums of the anchor's coordinates
+ * become data (sdfc_place). */
 #include "sdfc/internal.h"
 
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static void set_slot(sdfc *c, uint32_t slot, int expr) {
     if (c->exprs[expr].dynamic && !c->exprs[expr].local) add_dynamic(c, slot, expr);
 }
 
-/* ---- slots that depend on the anchor alone ---- */
+/* ---- slots that depend only on the anchor ---- */
 
 /* factor . anchor + term, folded into the period if that is not 0. */
 typedef struct affine {
@@ -89,7 +89,7 @@ static affine affine_of(const sdfc *c, int e, const affine *all) {
     }
 }
 
-/* A number and what a float leaves of it. */
+/* A number as a float, and its rounding error. */
 static void put_pair(double *to, double v) {
     to[0] = (double)(float)v;
     to[1] = v - to[0];
@@ -161,7 +161,7 @@ static void fill_record(sdfc *c, int part) {
     double *record = c->initial + at;
     find_motion(c, p);
     bool ends = p->moves || isfinite(f->radius);
-    double slack = 0; /* fp32 rounds the centre by up to 2^-24 of it */
+    double slack = 0; /* fp32 rounds the centre with a relative error of up to 2^-24 */
     for (int i = 0; i < 3; i++) {
         double most = fabs(f->center[i]);
         record[i] = ends ? f->center[i] : 0;
@@ -188,10 +188,10 @@ static void fill_record(sdfc *c, int part) {
     record[7] = p->material;
 }
 
-/* ---- all of them ---- */
+/* ---- all slots ---- */
 
-/* Which slots there are: the parts' records, materials, arguments that parts of a form do not
- * share, sides of the box that change. */
+/* Numbers the slots: the parts' records, materials, arguments that differ between parts of a form,
+ * changing sides of the box. */
 static void number_slots(sdfc *c) {
     for (int g = 0; g < c->group_count; g++) choose_slots(c, g);
     long slots = (long)c->part_count * MASU_SDFC_PART_SLOTS +

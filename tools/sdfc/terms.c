@@ -1,14 +1,14 @@
-/* terms.c: which operands of unions, cuts and blends are terms: operations that a march leaves out
- * where their value decides nothing.
+/* terms.c: which operands of unions, cuts and blends are terms: operations that a march skips if
+ * their value does not affect the result.
  *
- * In a ball of radius r two fields a and b of constant L keep a - b within 2 r L of what it is at
- * the middle. So min(a, b) is a throughout the ball if b exceeds a by more than that at the middle,
- * and a blend of radius k likewise if by k more (Barbier et al., "Lipschitz Pruning", Eurographics
- * 2025, section 4). Leaving b out changes no value in the ball, to the bit. Whoever has evaluated
- * the field with masu_margin = 2 r finds the bits of what is left in masu_kept.
+ * In a ball of radius r, two fields a and b of constant L keep a - b within 2 r L of its value at
+ * the centre. So min(a, b) equals a throughout the ball if b exceeds a by more than that at the
+ * centre; for a blend of radius k, if b exceeds a by k more (Barbier et al., "Lipschitz Pruning",
+ * Eurographics 2025, section 4). Skipping b changes no value in the ball, bit for bit. After an
+ * evaluation of the field with masu_margin = 2 r, masu_kept has the bits of the remaining operands.
  *
- * Bits: a scene of few parts has one for each part; behind them come those of the terms, part by
- * part. What a bit saves must be worth more than asking for it. */
+ * Bits: a scene of few parts has one for each part, followed by the bits of the terms, part by
+ * part. A bit must save more than its test costs. */
 #include "sdfc/internal.h"
 
 enum { WORD = 32, LEAST_COST = 10 };
@@ -24,8 +24,8 @@ static int cost_of_term(const sdfc_function *f, const sdfc_term *t) {
     return cost;
 }
 
-/* The bits of the terms of the same join in front of term t: those that end where its other
- * operand does, and what that one is joined of. */
+/* The bits of the same join's terms before term t: those that end where its other operand ends, and
+ * the terms joined into that operand. */
 static int bits_before(const sdfc_function *f, int t) {
     int bits = 0, end = f->terms[t].first - 1;
     if (f->terms[t].opens || f->terms[t].cap) return 0;
@@ -72,7 +72,7 @@ static bool same_terms(const sdfc_program *p, const sdfc_program *q) {
     return true;
 }
 
-/* Where the next `count` bits lie, none of them in another word than the first. */
+/* The position of the next `count` bits, all in the same 32-bit value. */
 static int place_of(int next, int count) {
     return next % WORD + count > WORD ? (next + WORD - 1) / WORD * WORD : next;
 }

@@ -1,12 +1,14 @@
-/* emitters.c: see emitters.h. Connected triangles of one emissive material are a part, joined where positions
- * are equal. Its shape is that of its box along the principal axes of its surface, in world space:
+/* emitters.c: see emitters.h. A part is a set of connected triangles of one emissive material,
+ * joined at equal positions. Its box along the principal axes of its surface, in world space,
+ * decides its shape:
  *
- *   rectangle  flat; around a sheet, or the middle of a flat body, which shines to both sides
+ *   rectangle  flat; covers a sheet, or is at the centre of a flat body that emits to both sides
  *   sphere     the shortest side is over 0.6 of the longest
- *   capsule    the two shorter sides are much alike
+ *   capsule    the two shorter sides have similar lengths
  *
- * The light holds all of the part, so that what a ray hits can be told to belong to it. Its radiance keeps the
- * part's flux. A part that covers less than 0.4 of its light, as a ring does, fits none. */
+ * The light contains the whole part, so that a ray hit can be recognised as part of it. Its
+ * radiance keeps the part's flux. A part that covers less than 0.4 of its light, such as a ring,
+ * has no suitable shape. */
 #include "bake/light/emitters.h"
 #include "bake/scene/piece.h"
 #include "cli/cli.h"
@@ -74,7 +76,7 @@ static masu_bake_vec3 along(const masu_bake_vec3 axis[2], double angle) {
     return masu_bake_mad(masu_bake_mad(zero, axis[0], cos(angle)), axis[1], sin(angle));
 }
 
-/* Half of what the part measures along an axis; the middle, from its centre. */
+/* Half the extent of the part along an axis; its centre, relative to the part's centre. */
 static double half_along(const corners *c, uint32_t part, masu_bake_vec3 center, masu_bake_vec3 axis,
                          double *middle) {
     double low = DBL_MAX, high = -DBL_MAX;
@@ -189,7 +191,7 @@ static void measure(const corners *c, uint32_t n, part *p) {
             p->axis[k + 1] = axis;
         }
     }
-    /* Of a square or a cube the principal axes may be any. */
+    /* The principal axes of a square or a cube are arbitrary. */
     for (int k = 2; k >= 0; k -= 2) {
         masu_bake_vec3 flat[2] = {p->axis[k == 2 ? 0 : 1], p->axis[k == 2 ? 1 : 2]};
         masu_bake_vec3 kept = p->axis[k];
@@ -237,7 +239,7 @@ static masu_blob_light shape_of(const corners *c, uint32_t n, const part *p, boo
                                 double *cover) {
     masu_blob_light light = {.radius = 1e-6f, .parent = MASU_BLOB_NONE, .name = MASU_BLOB_NONE};
     masu_bake_vec3 zero = {0, 0, 0}, u = zero, v = zero;
-    double shines = p->area, area; /* of both, all that shines */
+    double shines = p->area, area; /* emitting areas of the part and of the light */
     bool sheet = masu_bake_length(p->normal) > 0.9;
     if (p->half[2] < 0.5 * p->half[1]) {
         u = masu_bake_mad(zero, p->axis[0], p->half[0]);

@@ -1,11 +1,10 @@
 /* environment.c: see environment.h.
  *
- * Mip m is for roughness m / (mips - 1): the picture averaged by the lobe of GGX that a mirror
- * direction sees from above, weighted by the cosine (Karis, Real Shading in Unreal Engine 4,
- * SIGGRAPH 2013 course). The lobe is sampled by importance; each sample looks up a mip of the
- * unblurred map as coarse as the samples lie apart (Krivanek and Colbert, Real-time Shading with
- * Filtered Importance Sampling, EGSR 2008), so that a bright spot is neither missed nor hit
- * alone. */
+ * Mip m is for roughness m / (mips - 1): the image averaged by the GGX lobe of the mirror direction
+ * at normal incidence, weighted by the cosine (Karis, Real Shading in Unreal Engine 4, SIGGRAPH
+ * 2013 course). The lobe is importance-sampled. Each sample reads a mip of the unblurred map that
+ * matches the distance between samples (Krivanek and Colbert, Real-time Shading with Filtered
+ * Importance Sampling, EGSR 2008), so that a bright spot is neither missed nor aliased. */
 #include "bake/light/environment.h"
 
 #include "bake/base/file.h"
@@ -162,7 +161,7 @@ bool masu_bake_load_panorama(const char *path, masu_bake_panorama *out) {
 
 /* ---- Directions ------------------------------------------------------------------------------ */
 
-/* From 0..1 each way (Cigolle et al., JCGT 3-2, 2014), +y at the middle. */
+/* From 0..1 on both axes (Cigolle et al., JCGT 3-2, 2014), +y at the centre. */
 void masu_bake_octahedral(double x, double y, double out[3]) {
     double u = 2 * x - 1, v = 2 * y - 1, up = 1 - fabs(u) - fabs(v);
     if (up < 0) {
@@ -240,7 +239,7 @@ void masu_bake_unpack_9995(uint32_t texel, double out[3]) {
     for (uint32_t c = 0; c < 3; c++) out[c] = ldexp(texel >> 9 * c & 511, (int)(texel >> 27) - 24);
 }
 
-/* Across an edge of the square lies the same edge, the other way round. */
+/* Across an edge of the square, the neighbours are on the same edge, in reverse order. */
 static size_t wrapped_texel(int32_t x, int32_t y, int32_t size) {
     if (x < 0 || x >= size) {
         x = x < 0 ? -1 - x : 2 * size - 1 - x;
@@ -373,7 +372,7 @@ static uint32_t make_lobe(double roughness, uint32_t size, lobe_sample out[SAMPL
         s->direction[1] = 2 * h * sine * sin(angle);
         s->direction[2] = s->weight = 2 * cos2 - 1;
         if (!(s->weight > 0)) continue;
-        /* Of directions of light: D cos / (4 cos), seen from above. */
+        /* The density of light directions: D cos / (4 cos), at normal incidence. */
         double k = cos2 * (a2 - 1) + 1, density = a2 / (PI * k * k) / 4;
         double apart = 1 / (SAMPLES * density), texel = 4 * PI / ((double)size * size);
         s->lod = 0.5 * log2(apart / texel) + 0.5;
@@ -420,7 +419,7 @@ void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
     masu_bake_buffer *texels = &content->section[MASU_BLOB_ENVIRONMENT_TEXELS];
     pyramid source;
     lobe_sample lobe[SAMPLES];
-    /* Of four texels an edge, bilinear, even roughness 1 would be 3 % off. */
+    /* With four texels per edge, bilinear filtering has an error of 3 % even at roughness 1. */
     while (map.mips < 8 && (map.mips < 2 || size >> map.mips >= 8)) map.mips++;
     make_pyramid(p, size, &source);
     masu_bake_fit_irradiance(p, &map);

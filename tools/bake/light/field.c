@@ -1,5 +1,5 @@
-/* field.c: see field.h. A ray marches each part by itself, within the part's box, and always the
- * one that it may meet first: so most parts are asked once or never. */
+/* field.c: see field.h. A ray marches each part separately, within the part's box, always in the
+ * part that it could hit first: most parts are evaluated once or never. */
 #include "bake/light/field.h"
 #include "bake/base/file.h"
 #include "bake/shader/sdf.h"
@@ -74,7 +74,7 @@ static bool clip(const double low[3], const double high[3], const double o[3], c
     return *near < *far;
 }
 
-/* A part that the ray may meet: not before `until`, nor from `end` on. */
+/* A part that the ray could hit: not before `until`, and not from `end` on. */
 typedef struct waiting {
     uint32_t part;
     double until, end;

@@ -23,9 +23,9 @@ static uint64_t mixed(uint64_t x) {
 
 static float unit(uint64_t bits) { return (float)(bits >> 40) * 0x1p-24f; }
 
-/* Pairs 0 and 1: Kronecker sequences, shifted. Their steps are the first two powers of 1 / r, r
- * the real root of r^3 = r + 1 for one, of r^4 = r + 1 for the other (Roberts 2018). From pair 2
- * on, where low discrepancy in so many dimensions gains nothing, plain random numbers. */
+/* Pairs 0 and 1 are shifted Kronecker sequences. Their steps are the first two powers of 1 / r, r
+ * the real root of r^3 = r + 1 for one, of r^4 = r + 1 for the other (Roberts 2018). From pair 2 on
+ * they are random numbers, because low discrepancy has no benefit in that many dimensions. */
 void masu_path_sample(uint64_t seed, uint32_t index, uint32_t pair, float out[2]) {
     static const uint64_t steps[2][2] = {{0xC13FA9A902A6328Fu, 0x91E10DA5C79E7B1Cu},
                                          {0xD1B54A32D192ED03u, 0xABC98388FB8FAC02u}};
@@ -63,7 +63,7 @@ static float dot3(const float a[3], const float b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* What the surface sends back of the suns. */
+/* Adds the sunlight that the surface reflects. */
 static uint64_t add_suns(const masu_bake_trace *trace, const masu_path_lights *l,
                          const masu_bake_hit *hit, const float through[3], float (*sum)[3]) {
     uint64_t rays = 0;
@@ -113,7 +113,7 @@ uint64_t masu_path_radiance(const masu_bake_trace *trace, const masu_path_lights
             most = fmaxf(most, hit.albedo[c]);
         }
         if (!(most > 0)) break;
-        if (bounce >= 1) { /* Russian roulette: what is dark is followed less often */
+        if (bounce >= 1) { /* Russian roulette: dark paths are continued less often */
             float kept = fminf(fmaxf(most, 0.1f), 1.0f);
             masu_path_sample(seed, index, bounce * 2 + 1, u);
             if (u[0] >= kept) break;

@@ -1,9 +1,9 @@
-/* path.h: diffuse light along random paths through a traced scene, each source apart: what comes of
- * a sky, of emissive surfaces, and of each of some suns. Offline: light probes and the truth that
- * they are held against.
+/* path.h: diffuse light along random paths through a traced scene, each source separately: the sky,
+ * emissive surfaces, and each of a number of suns. Offline, for light probes and their ground
+ * truth.
  *
- * Numbers of a path come from its index and the item's seed alone, so that results do not depend
- * on how the work is shared out. */
+ * A path's random numbers depend only on its index and the item's seed, so that results do not
+ * depend on the distribution of work over threads. */
 #ifndef MASU_BAKE_PATH_H
 #define MASU_BAKE_PATH_H
 
@@ -18,7 +18,7 @@ typedef struct masu_path_lights {
     uint32_t sky_sets;
     uint32_t suns;         /* of irradiance pi on a facing surface */
     const float (*sun)[4]; /* towards each */
-    uint32_t bounces;      /* surfaces that a path meets at most */
+    uint32_t bounces;      /* maximum number of surfaces in a path */
 } masu_path_lights;
 
 /* Sets are in this order: the sky's, then one of emissive surfaces, then the suns'. */

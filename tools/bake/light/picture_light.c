@@ -1,12 +1,12 @@
 /* picture_light.c: see picture_light.h. Start at masu_bake_fit_irradiance.
  *
- * Order 2 (Ramamoorthi and Hanrahan, SIGGRAPH 2001) leaves the bands 4, 6, ... of the irradiance:
- * the odd ones above 1 are zero. They are largest around a bright source, so that one lobe takes
- * most of them: the clamped cosine with a rounded corner that the analytic sky has
- * (src/frame/sky.c, shared/sky.h). The shader evaluates it for every sky, and Legendre's P4 along
- * the vertical too. For each of many directions of the lobe all coefficients are fitted by least
- * squares, of the error relative to the irradiance: an absolute one is most visible on the dark
- * side. */
+ * Order 2 (Ramamoorthi and Hanrahan, SIGGRAPH 2001) omits the bands 4, 6, ... of the irradiance;
+ * the odd bands above 1 are zero. The omitted bands are largest around a bright source, so that one
+ * lobe contains most of their energy: the clamped cosine with a rounded corner that the analytic
+ * sky has (src/frame/sky.c, shared/sky.h). The shader evaluates the lobe for every sky, and also
+ * Legendre's P4 along the vertical. For each of many lobe directions, least squares fits all
+ * coefficients. It minimises the error relative to the irradiance, because an absolute error is
+ * most visible on the dark side. */
 #include "bake/light/picture_light.h"
 
 #include "cli/cli.h"
@@ -23,7 +23,7 @@
 #define CELL_ROWS 64u
 #define CELLS (2u * CELL_ROWS * CELL_ROWS)
 #define NORMALS 2000u
-#define CANDIDATES 400u /* of a hemisphere: what is fitted is even */
+#define CANDIDATES 400u /* of a hemisphere: the fitted function is even */
 #define REFINEMENTS 12u
 /* Irradiance, as a share of the mean, that is added before an error is divided by it. */
 #define FLOOR 0.1

@@ -168,11 +168,11 @@ static double brightest(const masu_bake_panorama *p, double direction[3]) {
 
 bool masu_bake_cut_sun(masu_bake_panorama *p, masu_bake_picture_sun *out) {
     double centre[3] = {0, 1, 0}, total = brightest(p, centre);
-    /* A pixel wider than the cone says nothing of the size of what it shows. */
+    /* A pixel wider than the cone has no information about the size of the source. */
     if (!(total > 0) || PI / p->height > CONE || 2 * PI / p->width > CONE) return false;
     spot s = measure(p, centre);
-    /* Of an overexposed sun the brightest pixel is anywhere on its disc: once more around the
-     * middle. */
+    /* The brightest pixel of an overexposed sun can be anywhere on its disc: repeat around the
+     * centroid. */
     memcpy(centre, s.toward, sizeof centre);
     if (!normalize(centre)) return false;
     s = measure(p, centre);

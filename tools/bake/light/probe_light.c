@@ -52,9 +52,9 @@ void masu_probe_basis(const float d[3], float y[9]) {
     y[8] = 0.546274f * (d[0] * d[0] - d[1] * d[1]);
 }
 
-/* The interpolant through the suns with the kernel 1 - angle / pi, which is positive definite on
- * the sphere and along an arc is linear from sun to sun; what is below 0 away from them left
- * out, then to a sum of 1. */
+/* Interpolates between the suns with the kernel 1 - angle / pi. It is positive definite on the
+ * sphere, and linear from sun to sun along an arc. Negative weights away from the suns are set to
+ * 0, then the sum is normalised to 1. */
 void masu_probe_sun_weights(const masu_blob_probes *p, const float direction[3],
                             float weights[MASU_PROBE_SUNS_MAX]) {
     float near[MASU_PROBE_SUNS_MAX] = {0}, sum = 0;
@@ -122,8 +122,8 @@ void masu_probe_light(const masu_blob_probes *p, const uint32_t *data, const mas
 /* ---- lookup ---- */
 
 /* Mean and mean square of the distance from a probe along d, in units of a cell's diagonal:
- * bilinear in the probe's octahedral map, whose border of one texel repeats what lies across the
- * edge. */
+ * bilinear in the probe's octahedral map, which has a border of one texel with the values across
+ * the edge. */
 static void distances(const masu_blob_probes *p, const uint32_t *map, const float d[3],
                       float out[2]) {
     uint32_t side = p->visibility + 2;
@@ -151,8 +151,9 @@ static void distances(const masu_blob_probes *p, const uint32_t *map, const floa
     }
 }
 
-/* How likely a point at `distance` along d is seen from the probe: Chebyshev's bound over the two
- * moments (Donnelly and Lauritzen, Variance Shadow Maps, 2006; Majercik et al., JCGT 8-2, 2019). */
+/* Probability that a point at `distance` along d is visible from the probe: Chebyshev's bound over
+ * the two moments (Donnelly and Lauritzen, Variance Shadow Maps, 2006; Majercik et al., JCGT 8-2,
+ * 2019). */
 static float seen(const masu_blob_probes *p, const uint32_t *map, const float d[3],
                   float distance) {
     float moments[2];

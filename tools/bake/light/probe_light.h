@@ -1,7 +1,7 @@
-/* probe_light.h: what the runtime does with light probes, in C: shaders/light/probes.glsl and
- * probes_light.comp say the same in GLSL, and tests/gpu/test_probes.c compares the two. masu-bake
- * measures with it how far the light of a grid is from the truth. Bounded and total: whatever the
- * words hold, what comes out is finite. */
+/* probe_light.h: the runtime's light probe evaluation, in C. It matches shaders/light/probes.glsl
+ * and probes_light.comp; tests/gpu/test_probes.c compares the two. masu-bake uses it to measure the
+ * error of a grid's light against ground truth. Bounded and total: the results are finite for any
+ * bit pattern of the input. */
 #ifndef MASU_PROBE_LIGHT_H
 #define MASU_PROBE_LIGHT_H
 
@@ -18,12 +18,12 @@ typedef struct masu_probe_sky {
 /* Y_lm of a unit direction: 1; y, z, x; xy, yz, 3zz - 1, xz, xx - yy, with their factors. */
 void masu_probe_basis(const float d[3], float y[9]);
 
-/* What share of each baked sun makes up one from this direction. */
+/* The weight of each baked sun for a sun in this direction. */
 void masu_probe_sun_weights(const masu_blob_probes *probes, const float direction[3],
                             float weights[MASU_PROBE_SUNS_MAX]);
 
-/* Sums up the sets of every probe under this light: MASU_PROBE_LIT_WORDS for each, as masu_shared.h
- * says. */
+/* Sums the sets of every probe under this light: MASU_PROBE_LIT_WORDS 32-bit values for each, in
+ * the layout of masu_shared.h. */
 void masu_probe_light(const masu_blob_probes *probes, const uint32_t *data,
                       const masu_probe_sky *light, uint32_t *lit);
 

@@ -1,11 +1,11 @@
-/* probe_report.c: the light of a grid against the truth. The truth is path traced, at points that
- * are seen from random places within the grid, with more rays and bounces than probes get; it has
- * the scene's own sky, not its spherical harmonics. Beside it stand what a renderer without probes
- * does: the sky's harmonics without anything in between, and one colour.
+/* probe_report.c: compares the light of a grid with ground truth. Ground truth is path traced, at
+ * surface points visible from random positions within the grid, with more rays and bounces than the
+ * probes use. It uses the scene's sky itself, not its spherical harmonics. Two renderers without
+ * probes are listed for comparison: the sky's harmonics without occlusion, and one constant colour.
  *
  * All numbers are irradiance / pi. RMSE: the root of the mean squared error over points and
- * channels, by the mean of the truth; bias: the mean error by it; worst: the error that 1 in 20
- * points exceeds. */
+ * channels, relative to the mean of the ground truth; bias: the mean error, also relative; worst:
+ * the error that 1 in 20 points exceeds. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/light/path.h"
 #include "bake/light/probe_light.h"
@@ -144,7 +144,7 @@ typedef struct method {
     uint32_t bands, visibility;
 } method;
 
-/* Which light, as weights of the four parts of the truth. */
+/* A light, as weights of the four parts of the ground truth. */
 typedef struct light {
     const char *name;
     float weights[4];
@@ -229,8 +229,8 @@ uint32_t masu_bake_judge_probes(const masu_bake_content *content,
     const uint32_t *data = MASU_BAKE_ARRAY(content, MASU_BLOB_PROBE_DATA, const uint32_t);
     const masu_blob_environment *e =
         MASU_BAKE_ARRAY(content, MASU_BLOB_ENVIRONMENT, const masu_blob_environment);
-    /* The first sun, and the middle between it and the second: or, of a single one, 20 degrees
-     * on. */
+    /* The first sun, and the direction half way between the first and the second; for a single sun,
+     * 20 degrees further. */
     float suns[2][4] = {{0}};
     masu_bake_vec3 a = masu_bake_v3f(e->sun_direction), b;
     if (p->suns) a = masu_bake_v3f(p->sun_direction[0]);

@@ -1,5 +1,5 @@
-/* probes.c: see probes.h. A probe is one item of work: its rays, their numbers and their
- * order depend on its place in the grid alone. */
+/* probes.c: see probes.h. A probe is one item of work: the number, values and order of its rays
+ * depend only on its position in the grid. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/light/probes.h"
 #include "bake/base/process.h"
@@ -14,10 +14,10 @@
 
 #define PROBES_WISHED 2048.0
 #define COEFFICIENTS 27u
-#define DISTANCE_MOST 1.5f /* of a cell's diagonal: what is farther hides nothing in a cell */
-/* A probe from which more of the rays than this meet the backs of surfaces is inside of
- * something; and so is one that is this near to a surface, in metres: its map would not tell the
- * two sides apart. */
+#define DISTANCE_MOST 1.5f /* in units of a cell's diagonal: farther surfaces occlude nothing within
+                            * a cell */
+/* A probe is inside an object if more than this share of its rays hits back faces. A probe this
+ * close to a surface, in metres, is invalid too: its map could not separate the two sides. */
 #define BACKS_MOST 0.25f
 #define FACE_NEAREST 1e-3f
 /* Rays of a live probe: the lobes of its map are narrow. */
@@ -30,10 +30,10 @@ masu_bake_probe_settings masu_bake_probe_defaults(void) {
 
 /* ---- the grid ---- */
 
-/* Whether light is baked, not maps of distances alone. */
+/* Whether light is baked, not only distance maps. */
 static bool is_lit(const masu_bake_probe_settings *s) { return s->wanted || !s->live; }
 
-/* Of a probe on the device. */
+/* Device memory per probe. */
 static uint64_t device_bytes(const masu_bake_probe_settings *s, const masu_blob_probes *p) {
     uint64_t side = s->visibility + 2, map = s->visibility ? side * side : 0;
     uint64_t words = masu_probe_sets(p) * MASU_PROBE_WORDS + map + MASU_PROBE_LIT_WORDS;
@@ -204,7 +204,7 @@ static void make_map(uint32_t side, bool narrow, uint32_t rays, const float (*hi
                                                << 16;
         }
     }
-    /* What lies across an edge of the square is the same edge, turned around. */
+    /* The texels across an edge of the square are on the same edge, in reverse order. */
     for (uint32_t k = 0; k < side; k++) {
         uint32_t back = side - k;
         map[k + 1] = map[outer + back];
@@ -279,8 +279,8 @@ static void trace_probe(void *context, uint32_t item) {
     atomic_fetch_add(&w->rays, count);
 }
 
-/* Probes inside of things take the mean of those around them, round after round. Returns how
- * many. */
+/* Invalid probes (inside objects) get the mean of their valid neighbours, in repeated passes.
+ * Returns their number. */
 static uint64_t fill_invalid(work *w) {
     const masu_blob_probes *g = w->grid;
     uint32_t count = g->counts[0] * g->counts[1] * g->counts[2];
@@ -324,7 +324,7 @@ static uint64_t fill_invalid(work *w) {
 static void write_sets(work *w, masu_blob_probes *p, masu_bake_buffer *out) {
     uint32_t count = p->counts[0] * p->counts[1] * p->counts[2], glow = p->sky_sets;
     for (size_t i = 0; i < (size_t)count * w->sets * COEFFICIENTS; i++) {
-        /* Of live probes the rays of a frame meet it. */
+        /* For live probes, the rays of each frame hit the emissive surfaces. */
         if (i / COEFFICIENTS % w->sets == glow && w->sums[i] != 0 && !p->live) p->emissive = 1;
     }
     for (uint32_t i = 0; i < count; i++) {

@@ -48,7 +48,7 @@ static double diagonal_of(const masu_bake_box *b) {
     return sqrt(masu_bake_dot(d, d));
 }
 
-/* The marks of instances, and of meshes that one of them has. */
+/* Marks instances, and meshes that have a marked instance. */
 static void choose(const baker *b, double smallest, unsigned char *instances,
                    unsigned char *meshes) {
     uint64_t count = masu_bake_count(b->content, MASU_BLOB_INSTANCES);
@@ -78,8 +78,8 @@ static const float *position(const baker *b, uint32_t vertex) {
     return MASU_BAKE_VERTICES(b->content)[vertex].position;
 }
 
-/* In double the differences of floats of like size are exact; what is left has no area to speak
- * of. */
+/* In double precision, differences of floats of similar size are exact. A triangle that is flat
+ * after rounding has a negligible area. */
 static bool has_area(const float *a, const float *b, const float *c) {
     masu_bake_vec3 n = masu_bake_cross(masu_bake_sub(masu_bake_v3f(b), masu_bake_v3f(a)),
                                        masu_bake_sub(masu_bake_v3f(c), masu_bake_v3f(a)));
@@ -196,8 +196,8 @@ static void fill_report(const baker *b) {
     r->cost = r->triangles ? b->cost / (double)r->triangles : 0;
 }
 
-/* The least roughness that a material may have somewhere. Small relief changes it, but not below
- * what its facets have. */
+/* The lowest roughness that a material can have anywhere. Small relief changes the roughness, but
+ * not below that of its facets. */
 static float least_of(const masu_bake_content *content, const masu_blob_material *m) {
     float roughness = m->roughness * masu_bake_trace_least(content, m);
     if (m->meso != MASU_BLOB_NONE) {

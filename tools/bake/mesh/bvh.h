@@ -1,9 +1,9 @@
-/* bvh.h: what rays of reflections are traced through: a tree over the triangles of each mesh
- * that a traced instance has (src/scene/trace_tree.h), as the TRACE sections of the blob.
+/* bvh.h: ray tracing data for reflections: a BVH over the triangles of each mesh that has a traced
+ * instance (src/scene/trace_tree.h), written as the TRACE sections of the blob.
  *
- * A scene asks for it with "reflections" (docs/scene.md). Traced is what is large enough to be told
- * in a reflection, or says so itself; blended materials are not, and neither are triangles without
- * area. */
+ * A scene requests it with "reflections" (docs/scene.md). Instances are traced if they are large
+ * enough to be recognisable in a reflection, or if the scene requests it. Blended materials and
+ * triangles without area are not traced. */
 #ifndef MASU_BAKE_BVH_H
 #define MASU_BAKE_BVH_H
 
@@ -11,8 +11,8 @@
 
 enum { MASU_BAKE_TRACED_AUTO, MASU_BAKE_TRACED_YES, MASU_BAKE_TRACED_NO };
 
-/* Of the diagonal of all instances: smaller ones are not traced, unless the scene says how
- * small. */
+/* Fraction of the diagonal of all instances. Smaller instances are not traced, unless the scene
+ * gives another limit. */
 #define MASU_BAKE_TRACED_SHARE 5e-4
 
 typedef struct masu_bake_reflections {
@@ -20,13 +20,13 @@ typedef struct masu_bake_reflections {
     double smallest; /* diagonal of an instance's box, metres; below 0: by MASU_BAKE_TRACED_SHARE */
     double cutoff;   /* roughness from which nothing is traced */
     double distance; /* longest ray, metres */
-    uint32_t texture_size; /* of the pictures of textures: bake/texture/trace_texture.h */
+    uint32_t texture_size; /* size of the images of textures: bake/texture/trace_texture.h */
 } masu_bake_reflections;
 
 typedef struct masu_bake_bvh_report {
     uint64_t meshes, instances, nodes, triangles, bytes;
-    uint64_t flat;  /* triangles left out: no area */
-    uint64_t small; /* instances left out: too small */
+    uint64_t flat;  /* triangles skipped because they have no area */
+    uint64_t small; /* instances skipped because they are too small */
     uint32_t depth; /* of the deepest tree */
     double cost;    /* by the surface area heuristic, mean over the triangles */
     double seconds;
@@ -34,7 +34,7 @@ typedef struct masu_bake_bvh_report {
 
 masu_bake_reflections masu_bake_reflection_defaults(void); /* none are wanted */
 
-/* What the scene says of the instances from `first` on, the last that there are: one of
+/* Sets the scene's choice for the instances from `first` to the last one: one of
  * MASU_BAKE_TRACED_*. */
 void masu_bake_mark_traced(masu_bake_content *content, uint64_t first, int traced);
 

@@ -1,22 +1,22 @@
-/* creases.c: normals of triangles that came without any; see creases.h.
+/* creases.c: computes normals for triangles that have none; see creases.h.
  *
- * Corners at the same position, bit for bit, are found by sorting them; whether vertices are
- * shared says nothing: of some formats all are, of others none. The normal of a corner is the
- * sum of the faces around it that meet its own at less than the crease angle, weighted by their
- * angles there (Thuermer and Wuethrich 1998: no other weight is free of how a polygon was cut
- * into triangles). The importer's own step is not used: it takes for granted that no vertex is
- * shared, and gives a cube of eight vertices the normals of whichever face came last. */
+ * Sorting finds corners with identical position bits. Shared vertices carry no information: some
+ * formats share all vertices, others none. The normal of a corner is the sum of the normals of the
+ * surrounding faces within the crease angle of its own face, weighted by their angles at the corner
+ * (Thuermer and Wuethrich 1998: no other weight is independent of how a polygon was triangulated).
+ * The importer's own function is not used: it assumes that no vertex is shared, and gives a cube of
+ * eight vertices the normals of whichever face was last. */
 #include "bake/mesh/creases.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* cos(60 degrees), less what rounding takes: the sides of a prism of six meet at 60. */
+/* cos(60 degrees), minus a rounding allowance: the sides of a hexagonal prism are at 60 degrees. */
 #define CREASE 0.4999
 
-/* Each corner looks at all others of its position; where there are more, which no surface has,
- * at none: time stays bounded. */
+/* Each corner is compared with all others at its position. Above this number, which no real surface
+ * reaches, it is compared with none, to bound the time. */
 #define AROUND_MAX 512
 
 typedef struct corner {
@@ -50,7 +50,7 @@ static void measure(const masu_bake_triangles *t, const uint32_t *three, face *o
     if (!masu_bake_normalize(&out->normal)) out->normal = masu_bake_v3(0, 1, 0);
 }
 
-/* Of the corners of one position. */
+/* Smooths the corners at one position. */
 static void smooth(const face *faces, const corner *here, uint64_t count, int16_t (*out)[2]) {
     for (uint64_t i = 0; i < count; i++) {
         const masu_bake_vec3 own = faces[here[i].at / 3].normal;

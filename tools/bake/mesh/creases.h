@@ -4,9 +4,9 @@
 
 #include "bake/mesh/triangles.h"
 
-/* The quantised normal of each of `count` corners, three a triangle: indices into the vertices
- * of t, all in range, no triangle without area. Smooth where faces meet at less than 60 degrees,
- * else each face has its own. */
+/* Writes the quantised normal of each of `count` corners, three per triangle. The corners are
+ * indices into the vertices of t, all in range, and no triangle has zero area. Edges below 60
+ * degrees are smooth; other faces are flat-shaded. */
 void masu_bake_creased_normals(const masu_bake_triangles *t, const uint32_t *corners, uint64_t count, int16_t (*out)[2]);
 
 #endif

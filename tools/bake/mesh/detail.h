@@ -1,19 +1,19 @@
-/* detail.h: what masu-bake makes of a scene's meshes so that less has to be drawn.
+/* detail.h: mesh reduction in masu-bake.
  *
  *   merge.c      many small static meshes of a model -> one mesh per material and cell
  *   lod.c        LODs of a mesh, each with a bound of its error
- *   surface.c    distances, insides, closedness: the judge of LODs and of occluders
+ *   surface.c    distances, inside tests, closedness; validates LODs and occluders
  *
- * What hides what is behind a mesh is in occluders.h. */
+ * Occluders are in occluders.h. */
 #ifndef MASU_BAKE_DETAIL_H
 #define MASU_BAKE_DETAIL_H
 
 #include "bake/scene/content.h"
 
-/* Replaces the instances of `piece` by one mesh per material and cell of a grid of `cell` metres;
- * a triangle belongs to the cell of its middle. Meshes of over MASU_BAKE_MERGE_TRIANGLES triangles
- * that are shown more than once stay as they are. Names and parents of what is merged are lost.
- * NULL, or what is wrong. */
+/* Replaces the instances of `piece` by one mesh per material and cell of a grid of `cell` metres. A
+ * triangle belongs to the cell of its centroid. Meshes of over MASU_BAKE_MERGE_TRIANGLES triangles
+ * with more than one instance are unchanged. Merged instances lose names and parents. Returns NULL,
+ * or an error message. */
 #define MASU_BAKE_MERGE_TRIANGLES 256u
 const char *masu_bake_merge(masu_bake_content *piece, double cell);
 

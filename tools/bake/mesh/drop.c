@@ -1,9 +1,9 @@
 /* drop.c: see drop.h.
  *
- * Two height fields over the model's box, seen from above: the lowest of the model and the
- * highest of what is below. A triangle gives its height at the middles of the cells that it
- * covers, and its vertices theirs to the cells that they are in, so that nothing is lost between
- * the middles. The least gap of any cell is how far the model falls. */
+ * Rasterises two height fields from above, over the model's bounds: the lowest heights of the model
+ * and the highest of the scene below. A triangle writes its height at the centres of the cells that
+ * it covers; each vertex also writes its height to the cell that contains it, so that no detail
+ * between the centres is lost. The model falls by the smallest gap of any cell. */
 #include "bake/mesh/drop.h"
 
 #include <stdlib.h>
@@ -11,11 +11,11 @@
 #define CELLS MASU_BAKE_DROP_CELLS
 
 typedef struct field {
-    masu_bake_vec3 low; /* of the box */
+    masu_bake_vec3 low; /* minimum of the bounds */
     double cell[2];     /* along x and z */
-    double top;         /* surfaces above are left out */
+    double top;         /* surfaces above are ignored */
     double *heights;    /* of cells, by z and x */
-    bool lowest;        /* what is kept of each cell; else the highest */
+    bool lowest;        /* keep the lowest height of each cell, otherwise the highest */
 } field;
 
 static void keep(field *f, int x, int z, double height) {
@@ -47,7 +47,7 @@ static void add_triangle(field *f, const masu_bake_vec3 p[3]) {
         return;
     for (int k = 0; k < 3; k++) add_vertex(f, p[k]);
     double area = (p[1].x - p[0].x) * (p[2].z - p[0].z) - (p[2].x - p[0].x) * (p[1].z - p[0].z);
-    if (area == 0) return; /* seen from above a line, whose ends are there */
+    if (area == 0) return; /* a line when projected; its ends have been written */
     int x0 = clamp_cell(low[0], f->low.x, f->cell[0]), x1 = clamp_cell(high[0], f->low.x, f->cell[0]);
     int z0 = clamp_cell(low[1], f->low.z, f->cell[1]), z1 = clamp_cell(high[1], f->low.z, f->cell[1]);
     for (int z = z0; z <= z1; z++) {

@@ -1,14 +1,13 @@
-/* inside.c: boxes inside of a mesh's closed parts. A closed part has a winding number at every
- * point off its surface, constant wherever the surface is not crossed. A box that no triangle of
- * the part touches and whose middle is wrapped around is inside as a whole, so each ray from
- * outside meets the part before the box. Boxes grow from a few seeds, face by face, as long as that
- * holds.
+/* inside.c: finds boxes inside closed parts of a mesh. A closed part has a winding number at every
+ * point off its surface, constant in each region that the surface bounds. If no triangle of the
+ * part touches a box, and the winding number at its centre is not 0, the whole box is inside, and
+ * each ray from outside hits the part before the box. Boxes grow from a few seeds, face by face,
+ * while this holds.
  *
- * Tried in thought and left: surfaces that meshoptimizer has simplified. They cut corners
- * outwards as well as inwards, and moving them inwards by their error folds them where walls are
- * thin; nothing of them passes the test that boxes pass by construction. Left out too, since the
- * renderer draws boxes alone: a mesh's own triangles where they are few, though they would serve
- * open walls. */
+ * Rejected alternatives: surfaces simplified by meshoptimizer. They cut corners outwards as well as
+ * inwards, and an offset inwards by their error makes thin walls self-intersect; they pass no test
+ * that boxes pass by construction. A mesh's own triangles, if it has few, would help with open
+ * walls, but the renderer draws only boxes. */
 #include "bake/mesh/occluders.h"
 #include "bake/mesh/surface.h"
 
@@ -35,8 +34,8 @@ double masu_bake_second_side(const masu_bake_box *box) {
     return s[1];
 }
 
-/* A quarter of its surface is what a convex body covers on average (Cauchy): the better occluder is
- * the one with more surface, not the one with the largest face, which would be a sheet. */
+/* Heuristic: a convex body covers on average a quarter of its surface area (Cauchy). The better
+ * occluder has the larger surface, not the largest face, which would prefer a thin sheet. */
 static double surface_of(const masu_bake_box *box) {
     double s[3];
     sides(masu_bake_sub(box->high, box->low), s);
@@ -63,7 +62,7 @@ static bool inside(const solid *s, vec3 p) {
     return fabs(masu_bake_winding(s->triangles, s->count, p)) > 0.5;
 }
 
-/* Corners as the blob will hold them: the test is of what is drawn. */
+/* Corners as rounded in the blob, because the renderer draws those. */
 static masu_bake_box rounded(const masu_bake_box *b) {
     return (masu_bake_box){
         {(double)(float)b->low.x, (double)(float)b->low.y, (double)(float)b->low.z},
@@ -101,7 +100,8 @@ static bool grow(const solid *s, vec3 seed, masu_bake_box *out) {
            inside(s, masu_bake_mad(out->low, masu_bake_sub(out->high, out->low), 0.5));
 }
 
-/* Half way from the middle of a triangle to what is opposite, on its inner or outer side. */
+/* The point half way from the centroid of a triangle to the opposite surface, on its inner or outer
+ * side. */
 static bool half_way(const solid *s, size_t triangle, double side, vec3 *out) {
     const vec3 *t = s->triangles[triangle];
     vec3 e0 = masu_bake_sub(t[1], t[0]), e1 = masu_bake_sub(t[2], t[0]);
@@ -123,8 +123,8 @@ static bool half_way(const solid *s, size_t triangle, double side, vec3 *out) {
     return nearest < DBL_MAX;
 }
 
-/* The best box of one closed part: from the middle, from the middles of the eighths, and from
- * inside of some triangles, since a ring's middle is not in it. */
+/* The best box in one closed part. Seeds: the centre, the centres of the octants, and points behind
+ * some triangles, because a ring does not contain its own centre. */
 static bool box_in(const solid *s, masu_bake_box *best) {
     bool found = false;
     vec3 size = masu_bake_sub(s->box.high, s->box.low);
@@ -219,7 +219,7 @@ bool masu_bake_is_inside(const vec3 (*triangles)[3], size_t count, const masu_ba
     bool good = false;
     for (uint32_t i = 0; i < p.count && !good; i++) {
         solid s = solid_of(&p, i);
-        s.margin *= 0.01; /* the box was put into the mesh with more room */
+        s.margin *= 0.01; /* the box was added with more margin */
         good = p.closed[i] && clear(&s, box) && inside(&s, middle);
     }
     release(&p);

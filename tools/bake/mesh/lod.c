@@ -1,17 +1,17 @@
-/* lod.c: LODs of meshes. For each level several candidates are made; the one with the
- * least error that has few enough triangles is taken:
+/* lod.c: LODs of meshes. For each level it builds several candidates, and selects the one with the
+ * lowest error among those with few enough triangles:
  *
  *   simplified   meshoptimizer's edge collapses, primitive by primitive
- *   thinned      parts that hang together dropped, the smallest first, the rest simplified: frames,
- *                bars and sills of a facade, which no collapse can remove
- *   clustered    meshoptimizer's "sloppy" form, where the others get stuck; not of what has textures
+ *   thinned      the smallest connected parts dropped, the others simplified: frames, bars and
+ *                sills of a facade, which no collapse can remove
+ *   clustered    meshoptimizer's "sloppy" simplifier, if the others fail; not with textures
  *
- * The error is ours, not the simplifier's estimate: a bound of the two-sided distance between the
- * surfaces (surface.c), in the units of the mesh, of the whole mesh and of each of its materials: a
- * lamp on a wall may lose its outline and still be where the wall is. A part of a material that a
- * level drops counts as an error of its own size. Texture coordinates and normals are not judged. A
- * level has the mesh's primitives in the mesh's order, with its materials and vertices; only indices
- * are added. */
+ * The error is a bound of the two-sided distance between the surfaces (surface.c), not the
+ * simplifier's estimate. Its unit is that of the mesh. It covers the whole mesh and each of its
+ * materials: a lamp on a wall could lose its outline while the wall still has a surface there. If a
+ * level drops a part of a material, the size of the part is an error too. Texture coordinates and
+ * normals are not evaluated. A level has the primitives of the mesh in the same order, with the
+ * same materials and vertices; only indices are added. */
 #include "bake/mesh/detail.h"
 #include "bake/mesh/surface.h"
 #include "bake/scene/skin.h"
@@ -22,7 +22,7 @@
 
 #define SAVES 0.75         /* a level has at most this share of the triangles before it */
 #define WORST 0.15         /* and is at most this share of the diagonal wrong */
-#define TARGET_ERROR 0.25f /* what the simplifier may do; the judge is above */
+#define TARGET_ERROR 0.25f /* limit for the simplifier; the error bound above decides */
 
 static const double shares[3] = {0.5, 0.22, 0.08}; /* of the mesh's triangles, by level */
 
@@ -33,7 +33,7 @@ typedef struct form { /* indices of one level, primitive after primitive */
     double error;
 } form;
 
-/* What has one material, in parts that hang together. */
+/* All geometry of one material, in connected parts. */
 typedef struct look {
     uint32_t material;
     masu_bake_surface all;
@@ -72,7 +72,7 @@ static void form_release(form *f) {
     *f = (form){.error = DBL_MAX};
 }
 
-/* Of one material, MASU_BLOB_NONE: of all. */
+/* The surface of one material; MASU_BLOB_NONE: of all materials. */
 static masu_bake_surface surface_of(const source *s, const form *f, uint32_t material) {
     masu_bake_buffer corners = {0};
     const uint32_t *at = f->indices;
@@ -92,8 +92,8 @@ static masu_bake_surface surface_of(const source *s, const form *f, uint32_t mat
     return made;
 }
 
-/* A part that is gone, or far from what is left of its material, is seen as a spot of another
- * colour, at most as large as the part. */
+/* A part that was dropped, or is far from the remaining surface of its material, is visible as a
+ * spot of another colour, at most as large as the part. */
 static double measure_look(const source *s, const look *l, const form *f, double limit) {
     masu_bake_surface coarse = surface_of(s, f, l->material);
     double error = masu_bake_surface_deviation(&coarse, &l->all, limit);
@@ -188,8 +188,8 @@ static int by_size(const void *a, const void *b) {
     return p->part < q->part ? -1 : p->part > q->part;
 }
 
-/* The smallest parts dropped until `target` indices are left, or 8/5 of it if the rest is to be
- * simplified. */
+/* Drops the smallest parts until `target` indices are left, or 8/5 of `target` if the others are
+ * simplified afterwards. */
 static form thin(const source *s, double target, bool simplified) {
     sized *order = masu_bake_allocate(s->parts * sizeof *order);
     bool *keep = masu_bake_allocate(s->parts * sizeof *keep);
@@ -338,7 +338,8 @@ static void look_at_materials(source *s) {
 static void store(masu_bake_content *content, const source *s, uint32_t mesh, const form *f) {
     masu_blob_lod lod = {
         .mesh = mesh, .first_primitive = (uint32_t)masu_bake_count(content, MASU_BLOB_PRIMITIVES)};
-    /* Rounded up: the bound stays one. An exact form still has an error of a float's step. */
+    /* Rounded up, so that it remains a bound. An exact candidate still has an error of one fp32
+     * step. */
     lod.error = nextafterf((float)f->error, INFINITY);
     const uint32_t *at = f->indices;
     for (uint32_t i = 0; i < s->mesh.primitive_count; i++) {

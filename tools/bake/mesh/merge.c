@@ -1,11 +1,11 @@
-/* merge.c: static geometry of many small meshes becomes a few: one per material and cell of a grid,
- * so that a track of 3,900 meshes of 18 triangles is drawn by hundreds of draws instead of
- * thousands and each of them can still be culled. Cells, not whole materials: a mesh that is
- * everywhere is never outside the view. The origin is in the middle of a cell: a model around it
- * that is smaller than a cell becomes one mesh per material.
+/* merge.c: merges many small static meshes into one mesh per material and grid cell. A track of
+ * 3,900 meshes of 18 triangles then needs hundreds of draws instead of thousands, and each can
+ * still be culled. Cells are needed because a mesh that spans the scene is never outside the view.
+ * The origin is at the centre of a cell: a model around it that is smaller than a cell becomes one
+ * mesh per material.
  *
- * Vertices keep their bytes and texture coordinates but for place and normal, which move to the
- * model's space. */
+ * Vertices are copied unchanged, texture coordinates included, except for position and normal,
+ * which are transformed to model space. */
 #include "bake/mesh/detail.h"
 #include "bake/mesh/triangles.h"
 #include "bake/scene/piece.h"
@@ -174,7 +174,7 @@ static void put_together(masu_bake_content *out, const masu_bake_content *piece,
         uint32_t first = MASU_BAKE_PRIMITIVES(piece)[bits[i].primitive].first_vertex;
         masu_bake_affine a = masu_bake_transform(&MASU_BAKE_INSTANCES(piece)[bits[i].instance]);
         for (uint32_t k = 0; k < 3; k++) {
-            uint32_t corner = mirrors(&a) ? (3 - k) % 3 : k; /* the outside stays outside */
+            uint32_t corner = mirrors(&a) ? (3 - k) % 3 : k; /* keeps the outside */
             uint32_t from = first + MASU_BAKE_INDICES(piece)[bits[i].first_index + corner];
             uint32_t index = vertex_of(out, piece, table, slots, &p, bits[i].instance, from);
             masu_bake_append(&out->section[MASU_BLOB_INDICES], &index, sizeof index);
@@ -189,7 +189,7 @@ static void put_together(masu_bake_content *out, const masu_bake_content *piece,
     masu_bake_instance(out, &identity, mesh, MASU_BLOB_NONE, MASU_BLOB_NONE);
 }
 
-/* Instances that were left alone, with their meshes, after the chunks. */
+/* Copies the instances that were not merged, with their meshes, after the chunks. */
 static void keep(masu_bake_content *out, const masu_bake_content *piece, const uint32_t *left,
                  size_t count) {
     if (!count) return;
@@ -248,7 +248,7 @@ const char *masu_bake_merge(masu_bake_content *piece, double cell) {
             light.name = masu_bake_name(&out, name, strlen(name));
             masu_bake_append(&out.section[MASU_BLOB_LIGHTS], &light, sizeof light);
         }
-        /* Materials keep their numbers, so they move as they are; their names do not. */
+        /* Materials keep their numbers, so their bytes are unchanged; their names change. */
         for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MATERIALS); i++) {
             masu_blob_material m = MASU_BAKE_MATERIALS(piece)[i];
             const char *name = masu_bake_name_text(piece, m.name);
@@ -262,7 +262,7 @@ const char *masu_bake_merge(masu_bake_content *piece, double cell) {
                         kind == MASU_BLOB_MESHES || kind == MASU_BLOB_INSTANCES ||
                         kind == MASU_BLOB_MATERIALS || kind == MASU_BLOB_NAMES ||
                         kind == MASU_BLOB_LIGHTS;
-            if (ours) continue; /* what else a piece may hold stays */
+            if (ours) continue; /* other sections of a piece are unchanged */
             out.section[kind] = piece->section[kind];
             piece->section[kind] = (masu_bake_buffer){0};
         }

@@ -1,6 +1,6 @@
-/* occluders.c: see occluders.h. That a box lies inside of what the mesh hides is proven,
- * triangle by triangle, but for boxes that the scene's file gives: those are its word. For LODs
- * those are proven too. */
+/* occluders.c: see occluders.h. The code proves for each box, triangle by triangle, that it is
+ * inside the mesh's opaque surface. Boxes given by the scene file are not tested for the mesh
+ * itself, only for its LODs. */
 #include "bake/mesh/occluders.h"
 #include "bake/mesh/surface.h"
 #include "bake/scene/skin.h"
@@ -45,7 +45,7 @@ static uint32_t corner_of(const masu_blob_mesh *m, const float *p) {
 
 bool masu_bake_is_box(const masu_bake_content *content, uint32_t mesh, masu_bake_box *box) {
     const masu_blob_mesh *m = &MASU_BAKE_MESHES(content)[mesh];
-    /* Of each face, the corners that its triangles leave out: two that are opposite. */
+    /* For each face, the corners that its triangles do not use: two opposite ones. */
     uint32_t left_out[6] = {0}, triangles[6] = {0};
     for (uint32_t k = 0; k < 3; k++) {
         if (!(m->aabb_min[k] < m->aabb_max[k])) return false;
@@ -86,8 +86,7 @@ bool masu_bake_is_box(const masu_bake_content *content, uint32_t mesh, masu_bake
     return true;
 }
 
-/* Six times the volume inside of what it shows, where its triangles turn counter-clockwise seen
- * from outside. */
+/* Six times the enclosed volume, for triangles that are counter-clockwise from outside. */
 static double volume_of(const masu_bake_content *content, const masu_blob_mesh *mesh) {
     double sum = 0;
     for (uint32_t i = 0; i < mesh->primitive_count; i++) {
@@ -103,7 +102,8 @@ static double volume_of(const masu_bake_content *content, const masu_blob_mesh *
     return sum;
 }
 
-/* Of what is not seen from behind, what is inside out hides nothing: a room that is looked into. */
+/* A single-sided surface with inward faces occludes nothing, for example a room that the camera
+ * looks into. */
 static bool is_opaque(const masu_bake_content *content, const masu_blob_mesh *mesh) {
     bool single = false;
     for (uint32_t i = 0; i < mesh->primitive_count; i++) {

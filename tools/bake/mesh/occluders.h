@@ -1,7 +1,7 @@
-/* occluders.h: boxes that hide what is behind a mesh.
+/* occluders.h: boxes that occlude objects behind a mesh.
  *
- *   occluders.c   those that the scene gives, those that meshes are, and the section
- *   inside.c      boxes found inside of meshes */
+ *   occluders.c   boxes given by the scene, meshes that are boxes, and the section
+ *   inside.c      boxes found inside meshes */
 #ifndef MASU_BAKE_OCCLUDERS_H
 #define MASU_BAKE_OCCLUDERS_H
 
@@ -9,8 +9,8 @@
 
 #define MASU_BAKE_OCCLUDERS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_OCCLUDERS, masu_blob_occluder)
 
-/* Gives a mesh a box (object space), made smaller by what fp32 may round. False: nothing is left of
- * it within the mesh's bounds, or it has been there before. */
+/* Adds a box (object space) to a mesh, shrunk by the rounding error of fp32. False: the box is
+ * empty within the mesh's bounds, or it is a duplicate. */
 bool masu_bake_add_occluder(masu_bake_content *content, uint32_t mesh, masu_bake_box box);
 
 /* Whether the mesh is just a closed box along its own axes: six faces of two triangles each. Then
@@ -26,7 +26,7 @@ void masu_bake_drop_occluders(masu_bake_content *content);
 typedef struct masu_bake_occluder_report {
     uint32_t given, whole,
         inside;       /* meshes with occluders: of the scene, boxes themselves, others */
-    uint32_t dropped; /* nothing could be proven to lie inside */
+    uint32_t dropped; /* not proven to be inside */
     uint32_t too_small;
 } masu_bake_occluder_report;
 void masu_bake_make_occluders(masu_bake_content *content, double least,
@@ -42,12 +42,12 @@ void masu_bake_sort_occluders(masu_bake_content *content);
 
 #define MASU_BAKE_BOXES_MAX 4u /* per mesh */
 
-/* The largest boxes that lie in closed parts of the triangles, one of each at most; their second
- * longest sides are at least `least`. Returns how many. */
+/* Finds the largest boxes inside the closed parts of the triangles, at most one per part. Their
+ * second longest sides are at least `least`. Returns the number of boxes. */
 uint32_t masu_bake_boxes_inside(const masu_bake_vec3 (*triangles)[3], size_t count, double least,
                                 masu_bake_box boxes[MASU_BAKE_BOXES_MAX]);
 
-/* Whether all of the box lies in one closed part; false also where that cannot be told. */
+/* Whether the whole box is inside one closed part; false also if this cannot be determined. */
 bool masu_bake_is_inside(const masu_bake_vec3 (*triangles)[3], size_t count,
                          const masu_bake_box *box);
 

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A box with smoothed normals is meant to be a box: edges that turn by more than 45 degrees are no
- * chords. */
+/* A box with smoothed normals is meant to be a box: edges whose normals differ by more than 45
+ * degrees are not chords. */
 static const double least_cosine = 0.70;
 /* Limit of the rise as a share of the primitive's diagonal: shadows may begin no farther inside
  * their casters. */
@@ -36,7 +36,7 @@ static int by_radius(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Radius of the arc whose chord is the edge. No limit of the turn: a leg with four sides is thin,
+/* Radius of the arc whose chord is the edge. The angle has no limit: a leg with four sides is thin,
  * too. */
 static double radius_of(const masu_blob_vertex *a, const masu_blob_vertex *b) {
     masu_bake_vec3 edge = masu_bake_sub(masu_bake_v3f(b->position), masu_bake_v3f(a->position));

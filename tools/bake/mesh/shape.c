@@ -106,8 +106,8 @@ void masu_bake_sphere(masu_bake_content *piece, double radius, uint32_t subdivis
     finish(piece, &s, "sphere", tile);
 }
 
-/* The rectangle center +- u +- v along axes, seen from the side of u x v. A picture on it stands
- * upright, as seen from outside; on what lies, its upper edge is at -Z. */
+/* The rectangle center +- u +- v along axes, visible from the side of u x v. A texture on it is
+ * upright from outside; on a horizontal face its upper edge is at -Z. */
 static void add_face(soup *s, masu_bake_vec3 center, masu_bake_vec3 u, masu_bake_vec3 v,
                      double tile) {
     masu_bake_vec3 normal = masu_bake_cross(u, v), zero = {0, 0, 0};
@@ -135,7 +135,7 @@ void masu_bake_cuboid(masu_bake_content *piece, masu_bake_vec3 size, double tile
             double c[3] = {0}, u[3] = {0}, v[3] = {0};
             int a = (axis + 1) % 3, b = (axis + 2) % 3;
             c[axis] = side * h[axis];
-            u[a] = side * h[a]; /* turns the winding with the side */
+            u[a] = side * h[a]; /* changes the winding with the side */
             v[b] = h[b];
             add_face(&s, masu_bake_v3(c[0], c[1], c[2]), masu_bake_v3(u[0], u[1], u[2]),
                      masu_bake_v3(v[0], v[1], v[2]), tile);

@@ -1,6 +1,6 @@
-/* shape.h: meshes made by formula, for test scenes. Each becomes a piece with one mesh, one
- * instance and the default material, centred at the origin. `tile` says how often a picture repeats
- * over a face, or over half of a sphere's equator; 0: no texture coordinates. */
+/* shape.h: procedural meshes for test scenes. Each becomes a piece with one mesh, one instance and
+ * the default material, centred at the origin. `tile` is how often a texture repeats over a face,
+ * or over half of a sphere's equator; 0: no texture coordinates. */
 #ifndef MASU_BAKE_SHAPE_H
 #define MASU_BAKE_SHAPE_H
 
@@ -14,7 +14,7 @@ void masu_bake_cuboid(masu_bake_content *piece, masu_bake_vec3 size, double tile
 /* Two triangles in y = 0, facing +Y. */
 void masu_bake_plane(masu_bake_content *piece, double size_x, double size_z, double tile);
 
-/* One of them, as a scene asks for it. */
+/* Parameters of one shape, from the scene file. */
 typedef struct masu_bake_shape {
     enum { MASU_BAKE_SPHERE, MASU_BAKE_BOX, MASU_BAKE_PLANE } kind;
     masu_bake_vec3 size; /* of a sphere x is the radius; of a plane y is nothing */

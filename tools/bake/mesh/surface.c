@@ -164,8 +164,8 @@ double masu_bake_surface_distance(const masu_bake_surface *s, vec3 p, size_t *wh
     return sqrt(best);
 }
 
-/* What is known of the largest distance while triangles are looked at: it is at least `lower`,
- * at some corner, and at most `upper` for all triangles that are done. */
+/* Bounds of the largest distance during the search: at least `lower`, reached at some corner, and
+ * at most `upper` for all triangles processed so far. */
 typedef struct search {
     const masu_bake_surface *to;
     double lower, upper, limit;
@@ -185,8 +185,8 @@ static void deviation(search *s, const vec3 t[3], size_t hint, int cuts) {
         for (int k = 0; k < 3; k++) most = fmax(most, masu_bake_triangle_distance(one, t[k]));
         bound = fmin(bound, most);
     }
-    /* Distance changes no faster than place: no point is farther from its next corner than the
-     * longest edge over the root of three. */
+    /* The distance function has Lipschitz constant 1, so no point is farther from the closest
+     * corner than the longest edge / sqrt(3). */
     double edge = 0;
     for (int i = 0; i < 3; i++) {
         edge = fmax(edge, masu_bake_length(masu_bake_sub(t[(i + 1) % 3], t[i])));
@@ -211,7 +211,7 @@ double masu_bake_surface_deviation(const masu_bake_surface *from, const masu_bak
     if (!to->count) return DBL_MAX;
     search s = {.to = to, .limit = limit};
     size_t *nearest = masu_bake_allocate(from->count * sizeof *nearest), hint = 0;
-    /* All corners first: most triangles are then seen to matter less than the worst corner. */
+    /* All corners first: most triangles then have a bound below the worst corner. */
     for (size_t i = 0; i < from->count && s.lower <= limit; i++) {
         for (int k = 0; k < 3; k++) {
             s.lower = fmax(s.lower, masu_bake_surface_distance(to, from->triangles[i][k], &hint));
@@ -261,7 +261,7 @@ static size_t root_of(size_t *parent, size_t i) {
     return i;
 }
 
-/* Corners at the same place get the same number. */
+/* Corners at equal positions get equal numbers. */
 static size_t *number_corners(const vec3 (*triangles)[3], size_t count) {
     corner *corners = masu_bake_allocate(3 * count * sizeof *corners);
     size_t *number = masu_bake_allocate(3 * count * sizeof *number);

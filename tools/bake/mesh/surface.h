@@ -1,6 +1,6 @@
-/* surface.h: triangles as a surface, in double precision: how far it is, how far one surface is
- * from another at most, what of it is closed, and what lies inside. The judge of simplified meshes
- * and of occluders. */
+/* surface.h: geometric queries on triangle surfaces, in double precision: distance to a point,
+ * largest distance between two surfaces, closed parts, and inside tests. Validates simplified
+ * meshes and occluders. */
 #ifndef MASU_BAKE_SURFACE_H
 #define MASU_BAKE_SURFACE_H
 
@@ -26,10 +26,10 @@ double masu_bake_triangle_distance(const masu_bake_vec3 t[3], masu_bake_vec3 p);
 double masu_bake_surface_distance(const masu_bake_surface *surface, masu_bake_vec3 p,
                                   size_t *which);
 
-/* An upper bound of the largest distance from any point of `from` to the nearest of `to`. Bound,
- * not sample: a triangle is cut up until the distance of its corners to ONE triangle of `to`,
- * which is convex and so largest at a corner, exceeds what some corner shows by little. DBL_MAX
- * if it is seen to be over `limit`. */
+/* An upper bound of the largest distance from any point of `from` to the closest point of `to`. It
+ * is a bound, not a sample: a triangle is subdivided until its corners' distance to ONE triangle of
+ * `to` (convex, so largest at a corner) is only slightly above the largest distance found at a
+ * corner. DBL_MAX if the distance is found to be over `limit`. */
 double masu_bake_surface_deviation(const masu_bake_surface *from, const masu_bake_surface *to,
                                    double limit);
 
@@ -42,7 +42,7 @@ uint32_t masu_bake_surface_parts(const masu_bake_vec3 (*triangles)[3], size_t co
 /* How often closed triangles wrap around p: a whole number where p is not on them. */
 double masu_bake_winding(const masu_bake_vec3 (*triangles)[3], size_t count, masu_bake_vec3 p);
 
-/* True only if box and triangle cannot touch, nor come closer than `margin`. */
+/* True only if box and triangle are separated by at least `margin`. */
 bool masu_bake_box_apart(const masu_bake_box *box, const masu_bake_vec3 t[3], double margin);
 
 #endif

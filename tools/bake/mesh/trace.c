@@ -17,7 +17,7 @@
 #define TEXELS_A_SIDE 64u
 #define MASKS_MAX 32 /* masked texels that one ray passes; then it leaves the scene */
 
-/* A mip of one layer of a texture, linear, and whether one has been asked for. */
+/* A mip of one layer of a texture, linear, and whether it has been requested. */
 typedef struct picture {
     uint32_t width, height;
     float *rgba; /* NULL: none */
@@ -25,7 +25,7 @@ typedef struct picture {
 
 typedef struct look {
     float albedo[3], emissive[3], cutoff; /* cutoff 0: no mask */
-    uint32_t base, glow;                  /* pictures, or MASU_BLOB_NONE */
+    uint32_t base, glow;                  /* indices of images, or MASU_BLOB_NONE */
     uint32_t wrap[2];
 } look;
 
@@ -157,8 +157,8 @@ static masu_bake_vec3 decoded(const int16_t n[2]) {
     return masu_bake_v3((1 - fabs(y)) * (x >= 0 ? 1 : -1), (1 - fabs(x)) * (y >= 0 ? 1 : -1), z);
 }
 
-/* Triangles are turned so that they face as their vertices' normals do: files wind them either way,
- * and mirrors turn them around. */
+/* Orients triangles so that they face like their vertices' normals: files use both windings, and
+ * mirroring reverses them. */
 static void turn(const masu_bake_content *content, const masu_blob_primitive *p,
                  const uint32_t *corner, uint32_t out[3]) {
     const masu_blob_vertex *v = MASU_BAKE_VERTICES(content) + p->first_vertex;
@@ -294,8 +294,8 @@ uint64_t masu_bake_trace_triangles(const masu_bake_trace *trace) { return trace-
 
 /* ---- rays ---- */
 
-/* How far points are lifted off a surface at p, which a ray has travelled t to: some units in
- * the last place of what the coordinates were computed from. */
+/* Offset of points from a surface at p, for a ray that has travelled t: some units in the last
+ * place of the coordinates from which p was computed. */
 static float lift(const float p[3], float t) {
     float most = fmaxf(fabsf(p[0]), fmaxf(fabsf(p[1]), fabsf(p[2])));
     return 4e-6f * (most + t) + 1e-6f;

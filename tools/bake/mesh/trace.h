@@ -1,13 +1,13 @@
-/* trace.h: the scene being baked as something that rays can be shot at: all triangles that the
- * instances show, in world space, with the colour that they send back. Embree does the rays.
+/* trace.h: ray queries against the scene being baked: all triangles of its instances, in world
+ * space, with their reflected colour. Traversal is by Embree.
  *
- * What it knows of a surface is what diffuse light needs: which way it faces, its base colour and
- * what it emits, both with their maps, read from a mip of at most 64 texels a side; a masked texel
- * is not there. Base colour stands for the share of light that comes back, of metals too. LODs are
- * left out. With an SDF (light/field.h), that too.
+ * A surface has only the data that diffuse light needs: facing, base colour and emission. Both
+ * colours include their maps, read from a mip of at most 64 texels a side; masked texels are
+ * skipped. Base colour is used as the reflected fraction of light, also for metals. LODs are
+ * excluded. An SDF is included if there is one (light/field.h).
  *
- * Rays give the same answer in every run and on every thread: the tree is built by one thread,
- * and two surfaces at one place are told apart by their order in it. */
+ * Rays give the same result in every run and on every thread: one thread builds the tree, and its
+ * order decides between two surfaces at the same position. */
 #ifndef MASU_BAKE_TRACE_H
 #define MASU_BAKE_TRACE_H
 
@@ -31,11 +31,11 @@ typedef struct masu_bake_hit {
  * every ray leaves it. */
 masu_bake_trace *masu_bake_trace_make(const masu_bake_content *content);
 void masu_bake_trace_release(masu_bake_trace *trace);
-/* From here on rays meet this too; NULL: nothing. It is not released. */
+/* From this call on, rays also hit this SDF; NULL: none. The caller keeps ownership. */
 struct masu_bake_field;
 void masu_bake_trace_add(masu_bake_trace *trace, const struct masu_bake_field *field);
 
-/* The nearest surface up to `far`. Threads may ask at the same time. */
+/* The closest surface up to `far`. Thread-safe. */
 bool masu_bake_trace_ray(const masu_bake_trace *trace, const float origin[3],
                          const float direction[3], float far, masu_bake_hit *hit);
 /* Whether nothing is in between. */

@@ -42,8 +42,8 @@ void masu_bake_encode_normal(masu_bake_vec3 n, int16_t out[2]) {
         y = (1.0 - fabs(x)) * (y >= 0.0 ? 1.0 : -1.0);
         x = folded;
     }
-    /* Of the four grid points around, the one whose direction is nearest: rounding each component
-     * on its own can be off by almost twice as much. */
+    /* The one of the four surrounding grid points with the closest direction: rounding each
+     * component separately can have almost twice the error. */
     double best = -2.0;
     for (int corner = 0; corner < 4; corner++) {
         double cx = floor(x * 32767.0) + (corner & 1), cy = floor(y * 32767.0) + (corner >> 1);
@@ -151,15 +151,15 @@ typedef struct welder {
     masu_blob_primitive primitive; /* being built; its vertices are the last of the content */
     masu_bake_buffer *bent; /* influences of its vertices, behind those of others; or NULL */
     size_t bent_first;
-    float shift[2]; /* whole turns taken off texture coordinates, so that they are small */
+    float shift[2]; /* whole periods subtracted from texture coordinates, so that they are small */
 } welder;
 
-/* A vertex with its texture coordinates, which are a section of their own. */
+/* A vertex with its texture coordinates, which are in a separate section. */
 typedef struct corner {
     masu_blob_vertex vertex;
     float texcoord[2];
     masu_bake_attributes more;
-    masu_bake_influence influence; /* zero where nothing bends */
+    masu_bake_influence influence; /* zero without a skin */
 } corner;
 _Static_assert(sizeof(corner) == 56, "compared and hashed as bytes");
 
@@ -233,7 +233,7 @@ static bool usable(float texcoord) {
     return texcoord >= -MASU_TEXCOORD_MAX / 2 && texcoord <= MASU_TEXCOORD_MAX / 2;
 }
 
-/* Whole turns that centre the mapping about 0, where floats are finest. */
+/* Whole periods that centre the texture coordinates around 0, where floats are most precise. */
 static void find_shift(const masu_bake_triangles *t, const uint32_t *kept, uint64_t count,
                        float shift[2]) {
     for (int k = 0; k < 2; k++) {
@@ -244,7 +244,8 @@ static void find_shift(const masu_bake_triangles *t, const uint32_t *kept, uint6
             if (v < low) low = v;
             if (v > high) high = v;
         }
-        /* Coordinates in 0..1 stay; also what wraps in another way than by repeating. */
+        /* Coordinates in 0..1 are unchanged, and so are those with another wrap mode than
+         * repeating. */
         shift[k] = low <= high && (low < -2 || high > 3) ? roundf(low + (high - low) / 2) : 0;
     }
 }
@@ -266,7 +267,7 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
     if (t->vertex_count == 0 || t->index_count < 3) return true;
     uint32_t *kept = masu_bake_allocate((size_t)t->index_count * sizeof *kept);
     uint64_t count = keep_triangles(t, kept, losses);
-    /* Every kept index may become a vertex of its own in the worst split. */
+    /* In the worst case, every index becomes a separate vertex. */
     if (masu_bake_count(content, MASU_BLOB_INDICES) + count > INT32_MAX ||
         masu_bake_count(content, MASU_BLOB_VERTICES) + count > INT32_MAX) {
         free(kept);
@@ -299,7 +300,7 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
             }
             if (w.bent) made.influence = t->influences[from];
             memcpy(made.vertex.normal, normals[t->normals ? from : i + (uint64_t)k], sizeof made.vertex.normal);
-            /* + 0 turns -0 into 0: equal positions are equal bits. */
+            /* + 0 converts -0 to 0: equal positions have equal bits. */
             for (int c = 0; c < 3; c++) {
                 made.vertex.position[c] = t->positions[3 * (size_t)from + c] + 0;
             }

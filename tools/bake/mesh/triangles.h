@@ -5,7 +5,7 @@
 
 #include "bake/scene/content.h"
 
-/* What moves a vertex: up to four joints of its mesh; weights 65535 together. */
+/* The skinning of a vertex: up to four joints of its mesh; the weights have the sum 65535. */
 typedef struct masu_bake_influence {
     uint16_t joints[4], weights[4];
     uint32_t source; /* of a mesh that morphs: its number there; else 0 */
@@ -15,10 +15,10 @@ typedef struct masu_bake_influence {
 typedef struct masu_bake_triangles {
     const float *positions; /* 3 per vertex */
     const float *normals;   /* 3 per vertex; NULL: made, see creases.h */
-    const float *texcoords; /* 2 per vertex, v down the picture, or NULL */
+    const float *texcoords; /* 2 per vertex, v down the image, or NULL */
     const float *colors;    /* 4 per vertex, linear with alpha, or NULL */
     const float *second;    /* second texture coordinates, or NULL */
-    bool repeats;           /* their textures repeat: whole turns may be taken off */
+    bool repeats;           /* their textures repeat: whole periods may be subtracted */
     uint32_t vertex_count;
     const uint32_t *indices;
     uint64_t index_count; /* a rest behind the last full triangle is ignored */

@@ -1,5 +1,5 @@
-/* blob.c: content to blob; see blob.h. The machine that bakes is little-endian, as is the
- * format: structs are copied as they are. */
+/* blob.c: content to blob; see blob.h. The machine that bakes is little-endian, like the format:
+ * structs are copied bytewise. */
 #include "bake/write/blob.h"
 
 #include <string.h>
@@ -16,7 +16,7 @@ void masu_bake_make_blob(const masu_bake_content *content, masu_bake_buffer *out
     masu_blob_header header = {.magic = MASU_BLOB_MAGIC, .version = MASU_BLOB_VERSION};
     masu_blob_section table[MASU_BLOB_KIND_COUNT];
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
-        if (content->section[kind].bytes == 0) continue; /* an empty section is left out */
+        if (content->section[kind].bytes == 0) continue; /* empty sections are omitted */
         table[header.section_count++] =
             (masu_blob_section){.kind = kind,
                                 .stride = masu_bake_stride(kind),

@@ -31,7 +31,7 @@ static void put_double(masu_bake_buffer *out, double value) {
     masu_bake_append_text(out, text);
 }
 
-/* ... as the same float: what the blob stores. */
+/* Writes the shortest text that reads back as the same float, because the blob stores floats. */
 static void put_float(masu_bake_buffer *out, float value) {
     char text[40];
     for (int digits = 6; digits <= 9; digits++) {
@@ -164,7 +164,7 @@ static void put_camera(const masu_bake_look *l, const masu_bake_content *content
     masu_bake_append_text(out, "}]},\n");
 }
 
-/* The sun of a file is left to the file: a scene with a sun of its own ignores it. */
+/* The sun of a file is not written: a scene with its own sun ignores it. */
 static void put_sun(const masu_bake_look *l, const masu_bake_content *content,
                     masu_bake_buffer *out) {
     masu_bake_append_text(out, "  \"sun\": {");

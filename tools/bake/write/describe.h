@@ -5,8 +5,9 @@
 
 #include "bake/build/build.h"
 
-/* To options->output, or to stdout. Baked in its folder it gives the blob that the input gives
- * alone. `content`: as masu_bake_build leaves it with options->describe. False after reporting. */
+/* Writes to options->output, or to stdout. Baking the result in its folder gives the same blob as
+ * baking the input directly. `content`: from masu_bake_build with options->describe. False after
+ * reporting. */
 bool masu_bake_write_scene(const masu_bake_options *options, const masu_bake_description *d,
                            const masu_bake_content *content);
 

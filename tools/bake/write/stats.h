@@ -1,4 +1,4 @@
-/* stats.h: what has been baked, in numbers: one line for a person, a JSON file for programs. */
+/* stats.h: statistics of a bake: one line for a person, a JSON file for programs. */
 #ifndef MASU_BAKE_STATS_H
 #define MASU_BAKE_STATS_H
 

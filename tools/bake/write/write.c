@@ -8,8 +8,8 @@
 #include "plan/draws.h"
 #include "scene/scene.h"
 
-/* The reader that will meet the blob is its judge: nothing is written that it, or every renderer,
- * would refuse. */
+/* Validates the blob with the runtime's own reader, so that no blob is written that it or every
+ * renderer would reject. */
 static bool accepted(const char *input, const masu_bake_buffer *blob) {
     masu_scene scene;
     masu_detail detail = {0};
