@@ -40,17 +40,20 @@ once=" test_bench test_cli test_gpu_av test_reference test_soak "
 # Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
 # lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it (frame,
 # fixed_memory, upscale); what SwiftShader runs as well (far, faults, output, poison, stiff, trace).
-not_lavapipe_25=" test_ao test_bounce test_devices test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
+not_lavapipe_25=" test_ao test_bounce test_calls test_devices test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
 not_lavapipe_25+="test_host_pass test_ladder test_live test_load test_occlusion test_output test_pick test_poison test_reserve "
 not_lavapipe_25+="test_local_shadows test_resize test_sdf_casters test_shadow test_shadow_frames test_small_lamps test_specular_filters "
 not_lavapipe_25+="test_specular_sdf test_specular_truth test_stiff test_temporal test_terms test_trace test_truth test_upscale "
 # SwiftShader takes four times as long to draw. It leaves out decisions of the host and comparisons of many frames:
 # test_conform draws every pass there, test_poison gives each pass hostile bits, test_stiff marches.
-not_swiftshader=" test_ao test_bounce test_culling test_devices test_failures test_fixed_memory test_frame test_gltf_pictures "
-not_swiftshader+="test_governor test_governor_host test_host_pass test_ladder test_lights test_live test_load test_lods test_occluders "
-not_swiftshader+="test_occlusion test_pick test_pool test_reinit test_reserve test_resize test_sdf_casters test_shadow test_shadow_frames test_skin "
-not_swiftshader+="test_small_lamps test_specular_filters test_specular_sdf test_specular_textures test_specular_truth test_sprites test_temporal "
-not_swiftshader+="test_terms test_texture_order test_transparents test_truth test_viewports test_window "
+not_swiftshader=" test_ao test_bounce test_calls test_culling test_devices test_failures test_fixed_memory "
+not_swiftshader+="test_frame test_gltf_pictures test_governor test_governor_host test_host_pass test_ladder "
+not_swiftshader+="test_lights test_live test_live_environment test_live_textures test_load test_lods test_meshes "
+not_swiftshader+="test_occluders test_occlusion test_pick test_pool test_reinit test_reserve test_resize "
+not_swiftshader+="test_sdf_casters test_shadow test_shadow_frames test_skin test_small_lamps "
+not_swiftshader+="test_specular_filters test_specular_sdf test_specular_textures test_specular_truth "
+not_swiftshader+="test_sprites test_temporal test_terms test_texture_order test_transparents test_truth "
+not_swiftshader+="test_viewports test_window "
 
 # A rasteriser's own threads are in the way of the programs beside it: a tenth of the time.
 export LP_NUM_THREADS=${LP_NUM_THREADS-0}
