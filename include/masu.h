@@ -904,7 +904,7 @@ typedef struct masu_camera {
     double position[3];  /* world, metres */
     float forward[3];    /* need not be unit length */
     float up[3];         /* not parallel to forward; all zero: +Y */
-    float fov_y;         /* vertical field of view, radians, 0.0005..3.1; with a window it is unused,
+    float fov_y; /* vertical field of view, radians, 0.0005..3.1; with a window it is unused,
                             but must be finite */
     float near_distance; /* metres, 1e-9..1e9; 0: the scene's. There is no far plane */
     /* Offset of the sample position in every pixel, in pixels of the render size, right and down,

@@ -20,8 +20,8 @@
 
 static bool is_at(int file, const char *path) {
     struct stat open_one, there;
-    return fstat(file, &open_one) == 0 && lstat(path, &there) == 0 && open_one.st_ino == there.st_ino &&
-           open_one.st_dev == there.st_dev;
+    return fstat(file, &open_one) == 0 && lstat(path, &there) == 0 &&
+           open_one.st_ino == there.st_ino && open_one.st_dev == there.st_dev;
 }
 
 bool masu_atomic_file_lock(int file, const char *path) {
@@ -33,7 +33,8 @@ bool masu_atomic_file_lock(int file, const char *path) {
 
 int masu_atomic_file_lock_stale(const char *path, bool folder) {
     struct stat about;
-    if (lstat(path, &about) != 0 || (folder ? !S_ISDIR(about.st_mode) : !S_ISREG(about.st_mode)) || about.st_uid != geteuid())
+    if (lstat(path, &about) != 0 || (folder ? !S_ISDIR(about.st_mode) : !S_ISREG(about.st_mode)) ||
+        about.st_uid != geteuid())
         return -1;
     int file = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return -1;
@@ -65,7 +66,8 @@ void masu_atomic_file_remove_stale(const char *target) {
     strcpy(path + front, front ? "" : ".");
     DIR *folder = *base ? opendir(path) : NULL;
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        if (!is_draft_of(entry->d_name, base, length) || strlen(entry->d_name) > length + 256) continue;
+        if (!is_draft_of(entry->d_name, base, length) || strlen(entry->d_name) > length + 256)
+            continue;
         strcpy(path + front, entry->d_name);
         int file = masu_atomic_file_lock_stale(path, false);
         if (file < 0) continue;
@@ -125,7 +127,8 @@ int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
     *draft = (masu_atomic_file){.file = -1, .name = malloc(room)};
     if (!draft->name) return ENOMEM;
     masu_atomic_file_remove_stale(target);
-    for (unsigned attempt = 0; attempt < ATTEMPTS && draft->file < 0 && problem == EEXIST; attempt++) {
+    for (unsigned attempt = 0; attempt < ATTEMPTS && draft->file < 0 && problem == EEXIST;
+         attempt++) {
         snprintf(draft->name, room, "%s.%ld-%u.part", target, (long)getpid(), attempt);
         draft->file = open(draft->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (draft->file < 0) {

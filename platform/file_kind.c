@@ -94,11 +94,14 @@ const char *masu_file_hint(const char *path, const void *bytes, size_t count,
     switch (kind) {
     case MASU_FILE_BLOB: return "; a baked scene, for `masu render`, `masu plan` and `masu-view`";
     case MASU_FILE_DESCRIPTION:
-        return "; a scene description: `masu-bake FILE.json -o X.masu` bakes it, `masu-view` shows it";
+        return "; a scene description: `masu-bake FILE.json -o X.masu` bakes it, `masu-view` shows "
+               "it";
     case MASU_FILE_SDF:
-        return "; an SDF: `masu-bake FILE.sdf -o X.masu` bakes it, `masu-sdfc` checks it, `masu-view` shows it";
+        return "; an SDF: `masu-bake FILE.sdf -o X.masu` bakes it, `masu-sdfc` checks it, "
+               "`masu-view` shows it";
     case MASU_FILE_GLSL: return "; GLSL: a scene description names it as the source of its SDF";
-    case MASU_FILE_MODEL: return "; a model: `masu-bake MODEL -o X.masu` bakes it, `masu-view` shows it";
+    case MASU_FILE_MODEL:
+        return "; a model: `masu-bake MODEL -o X.masu` bakes it, `masu-view` shows it";
     case MASU_FILE_IMAGE:
         return "; an image, for `masu compare` (PNG, PFM, OpenEXR) and `masu upscale` (PNG)";
     case MASU_FILE_SUITE: return "; a suite, for `masu conform --suite FILE.json`";

@@ -225,7 +225,8 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                 .physical_device = host->physical,
                                 .queue_family = host->family},
                      .ray_query = host->desc.ray_query ? MASU_AUTO : MASU_OFF};
-    if (masu_device_query(&ask, &can, &detail)) return snprintf(error, size, "%s", detail.text), false;
+    if (masu_device_query(&ask, &can, &detail))
+        return snprintf(error, size, "%s", detail.text), false;
     if (host->desc.deny) can = (masu_device_info){0}, offered = (VkPhysicalDeviceFeatures){0};
     host->compressed = (can.used & MASU_FEATURE_TEXTURE_COMPRESSION_BC) != 0;
     host->ray_query = (can.used & MASU_FEATURE_RAY_QUERY) != 0;
@@ -323,7 +324,8 @@ void masu_headless_close(masu_headless *host) {
         vkDestroyDevice(host->device, host->desc.allocator);
     }
     if (host->instance) {
-        if (host->desc.surface_close) host->desc.surface_close(host->desc.surface_user, host->instance);
+        if (host->desc.surface_close)
+            host->desc.surface_close(host->desc.surface_user, host->instance);
         PFN_vkDestroyDebugUtilsMessengerEXT destroy =
             (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
                 host->instance, "vkDestroyDebugUtilsMessengerEXT");

@@ -237,7 +237,8 @@ bool masu_headless_source_of(masu_headless *host, VkFormat format, const void *t
             memcpy(to + texel * image_width * y, (const uint8_t *)texels + texel * width * y,
                    texel * width);
         }
-        made = upload(host, source->image, buffer.buffer, image_width, image_height, error, error_size);
+        made = upload(host, source->image, buffer.buffer, image_width, image_height, error,
+                      error_size);
     }
     masu_headless_buffer_destroy(host, &buffer);
     if (!made) masu_headless_source_destroy(host, source);

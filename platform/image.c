@@ -339,8 +339,8 @@ static bool png_is_whole(const char *path, const uint8_t *bytes, size_t count, c
     }
 }
 
-bool masu_image_decode_png(const char *path, const uint8_t *bytes, size_t count, struct masu_image *image,
-                           char *error, size_t error_size) {
+bool masu_image_decode_png(const char *path, const uint8_t *bytes, size_t count,
+                           struct masu_image *image, char *error, size_t error_size) {
     int width = 0, height = 0;
     *image = (struct masu_image){0};
     if (!png_is_whole(path, bytes, count, error, error_size)) {
@@ -358,8 +358,8 @@ bool masu_image_decode_png(const char *path, const uint8_t *bytes, size_t count,
     return true;
 }
 
-bool masu_image_png_size(const char *path, const uint8_t *bytes, size_t count, uint32_t *width, uint32_t *height,
-                         char *error, size_t error_size) {
+bool masu_image_png_size(const char *path, const uint8_t *bytes, size_t count, uint32_t *width,
+                         uint32_t *height, char *error, size_t error_size) {
     if (!png_is_whole(path, bytes, count, error, error_size)) {
         return false;
     }
@@ -368,15 +368,17 @@ bool masu_image_png_size(const char *path, const uint8_t *bytes, size_t count, u
     return true;
 }
 
-uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t count, uint32_t *width,
-                                 uint32_t *height, char *error, size_t error_size) {
+uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t count,
+                                 uint32_t *width, uint32_t *height, char *error,
+                                 size_t error_size) {
     int w = 0, h = 0;
     if (!png_is_whole(path, bytes, count, error, error_size)) {
         return NULL;
     }
     uint16_t *values = stbi_load_16_from_memory(bytes, (int)count, &w, &h, NULL, 1);
     if (!values) {
-        (void)fail(error, error_size, "%s: cannot decode the PNG file: %s", path, stbi_failure_reason());
+        (void)fail(error, error_size, "%s: cannot decode the PNG file: %s", path,
+                   stbi_failure_reason());
         return NULL;
     }
     *width = (uint32_t)w;

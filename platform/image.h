@@ -38,16 +38,16 @@ bool masu_image_load_png(const char *path, struct masu_image *image, char *error
                          size_t error_size);
 
 /* The same for a file in memory; the path is for messages. */
-bool masu_image_decode_png(const char *path, const uint8_t *bytes, size_t count, struct masu_image *image,
-                           char *error, size_t error_size);
+bool masu_image_decode_png(const char *path, const uint8_t *bytes, size_t count,
+                           struct masu_image *image, char *error, size_t error_size);
 
 /* The size in the header of a complete file within the limits; nothing is decoded. */
-bool masu_image_png_size(const char *path, const uint8_t *bytes, size_t count, uint32_t *width, uint32_t *height,
-                         char *error, size_t error_size);
+bool masu_image_png_size(const char *path, const uint8_t *bytes, size_t count, uint32_t *width,
+                         uint32_t *height, char *error, size_t error_size);
 
 /* 16-bit grey values, width * height, freed by free(). On NULL `error` has the reason. */
-uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t count, uint32_t *width,
-                                 uint32_t *height, char *error, size_t error_size);
+uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t count,
+                                 uint32_t *width, uint32_t *height, char *error, size_t error_size);
 
 /* rgba: height rows of width * 4 bytes, row_bytes apart (0 = tightly packed). */
 bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,

@@ -133,8 +133,9 @@ const masu_cli_command lab_isa = {
     .arguments = "SCENE.masu --gpu GPU[,GPU...] [options]",
     .summary =
         "compile every pipeline with GPUs' own compilers: registers, waves, instructions, spills",
-    .details =
-        "Starts a process for each GPU, in which the GPU's driver compiles all pipelines of the frame plan\n"
-        "and runs nothing. RADV's GPUs need Mesa only. The others need the folder of drivers that `make\n"
-        "isa-drivers` builds, named by the environment variable MASU_ISA_DRIVERS.\n",
+    .details = "Starts a process for each GPU, in which the GPU's driver compiles all pipelines of "
+               "the frame plan\n"
+               "and runs nothing. RADV's GPUs need Mesa only. The others need the folder of "
+               "drivers that `make\n"
+               "isa-drivers` builds, named by the environment variable MASU_ISA_DRIVERS.\n",
     .run = run};

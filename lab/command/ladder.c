@@ -244,7 +244,8 @@ static int print_device_class(uint32_t scene_class, const char *scene, const cha
     int code = model(scene, ladder, time, &m);
     if (code) return code;
     const char *last = strrchr(scene, '/');
-    printf("    [MASU_SCENE_%s] = { /* %s, ladder.json %u */\n", constants[scene_class], last ? last + 1 : scene, sum);
+    printf("    [MASU_SCENE_%s] = { /* %s, ladder.json %u */\n", constants[scene_class],
+           last ? last + 1 : scene, sum);
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
         printf("        [MASU_DEVICE_%s] = {", devices[k]);
         for (uint32_t r = 0; r < m->rung_count; r++)
@@ -269,13 +270,16 @@ static int print_devices(const masu_given *given) {
                 given->arguments[i]);
         }
     }
-    printf(
-        "/* ladder_devices.h: what the rungs of ladder_tables.h cost on classes of GPUs, relative to the first rung; part of\n"
-        " * ladder.c. COMPUTED by the cost model from the instructions that the GPUs' own compilers emit (masu-lab model\n"
-        " * --isa), not measured on any of them. Written by `make ladder-devices`: not to be edited. */\n"
-        "/* clang-format off */\n"
-        "#ifndef MASU_LADDER_DEVICES_H\n#define MASU_LADDER_DEVICES_H\n\n"
-        "static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RUNGS] = {\n");
+    printf("/* ladder_devices.h: what the rungs of ladder_tables.h cost on classes of GPUs, "
+           "relative to the first rung; part of\n"
+           " * ladder.c. COMPUTED by the cost model from the instructions that the GPUs' own "
+           "compilers emit (masu-lab model\n"
+           " * --isa), not measured on any of them. Written by `make ladder-devices`: not to be "
+           "edited. */\n"
+           "/* clang-format off */\n"
+           "#ifndef MASU_LADDER_DEVICES_H\n#define MASU_LADDER_DEVICES_H\n\n"
+           "static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RUNGS] = "
+           "{\n");
     for (uint32_t i = 0; i < given->count; i++) {
         uint32_t c = class_of(given->arguments[i], &rest);
         int code = split(rest, scene, ladder, &time) ? print_device_class(c, scene, ladder, time)
@@ -304,10 +308,9 @@ static bool write_part(const char *path, const masu_row *rows, const uint32_t *p
     size_t bytes = 0;
     FILE *f = open_memstream(&text, &bytes);
     if (!f) return snprintf(error, error_size, "out of memory"), false;
-    fprintf(
-        f,
-        "{\"scene\": \"costs\", \"driver\": \"none\", \"clock\": \"none\", \"width\": 1, \"height\": 1, "
-        "\"error\": \"flip\", \"rungs\": [");
+    fprintf(f, "{\"scene\": \"costs\", \"driver\": \"none\", \"clock\": \"none\", \"width\": 1, "
+               "\"height\": 1, "
+               "\"error\": \"flip\", \"rungs\": [");
     bool good = true;
     for (uint32_t i = 0; i < count && good; i++) {
         masu_rung rung;
@@ -389,14 +392,14 @@ static int write_all_costs(const masu_given *given) {
 }
 
 static const masu_option rows[] = {
-    MASU_FLAG(
-        options, devices, "devices",
-        "print ladder_devices.h instead: the cost of each rung on the model's five classes of GPU,\n"
-        "relative to the first rung"),
-    MASU_FLAG(
-        options, costs, "costs",
-        "write costs.csv into each DIR of masu bench: the cost of each setting on these classes, in ms;\n"
-        "masu bench then chooses no rung that another setting dominates on any class"),
+    MASU_FLAG(options, devices, "devices",
+              "print ladder_devices.h instead: the cost of each rung on the model's five classes "
+              "of GPU,\n"
+              "relative to the first rung"),
+    MASU_FLAG(options, costs, "costs",
+              "write costs.csv into each DIR of masu bench: the cost of each setting on these "
+              "classes, in ms;\n"
+              "masu bench then chooses no rung that another setting dominates on any class"),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
@@ -418,8 +421,9 @@ const masu_cli_command lab_ladder = {
                  "       masu-lab ladder --devices CLASS=SCENE.masu=LADDER.json[=SECONDS]...\n"
                  "       masu-lab ladder --costs SCENE.masu=DIR[=SECONDS]...",
     .summary = "print the ladders that the library is built with, src/quality/ladder_tables.h",
-    .details =
-        "LADDER.json is one that masu bench has measured. A class is polygons, world, sdf, both, or one of\n"
-        "them with -traced; each class takes one ladder. --devices and --costs need MASU_ISA_DRIVERS, as masu-lab\n"
-        "isa.\n",
+    .details = "LADDER.json is one that masu bench has measured. A class is polygons, world, sdf, "
+               "both, or one of\n"
+               "them with -traced; each class takes one ladder. --devices and --costs need "
+               "MASU_ISA_DRIVERS, as masu-lab\n"
+               "isa.\n",
     .run = run};

@@ -26,7 +26,8 @@ const masu_cli_command lab_meso = {
     .arguments = "(RELIEF.png --height H | RELIEF.obj | --make NAME) -o NAME [options]",
     .summary = "compare the material that masu-meso makes of a relief with ray tracing",
     .options = masu_meso_study_options,
-    .details =
-        "Writes NAME.csv and, with gnuplot, NAME_*.svg, and prints the error of radiance at five view\n"
-        "angles: of plain normal mapping, with an ambient occlusion map, and with the fitted curves.\n",
+    .details = "Writes NAME.csv and, with gnuplot, NAME_*.svg, and prints the error of radiance at "
+               "five view\n"
+               "angles: of plain normal mapping, with an ambient occlusion map, and with the "
+               "fitted curves.\n",
     .run = run};

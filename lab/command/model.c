@@ -16,16 +16,15 @@ typedef struct options {
 
 static const masu_option rows[] = {
     MASU_OUTPUT_SIZE_ROW(options, size),
-    MASU_TEXT(
-        options, ladder, "ladder", "FILE|off",
-        "the rungs: those of a ladder.json of masu bench; off, 1, 0.8 and 0.4 of the size (default off)"),
+    MASU_TEXT(options, ladder, "ladder", "FILE|off",
+              "the rungs: those of a ladder.json of masu bench; off, 1, 0.8 and 0.4 of the size "
+              "(default off)"),
     MASU_SIZE(options, drawn, "drawn",
               "size of the frames that are rendered and counted (default: half of --size)"),
     MASU_REAL(options, time, "time", "SECONDS", -1e9, 1e9, "moment of the scene and its camera"),
-    MASU_TEXT(
-        options, isa, "isa", "GPU[,GPU...]",
-        "use instruction counts from the compilers of GPUs (masu-lab isa): tgl, kbl, raven,\n"
-        "vangogh, a630"),
+    MASU_TEXT(options, isa, "isa", "GPU[,GPU...]",
+              "use instruction counts from the compilers of GPUs (masu-lab isa): tgl, kbl, raven,\n"
+              "vangogh, a630"),
     MASU_FILE(options, csv, "csv", "FILE", "write every pass of every rung as CSV"),
     MASU_FILE(options, fragment, "html-fragment", "FILE",
               "write the tables as one <section> of XHTML"),
@@ -77,7 +76,7 @@ const masu_cli_command lab_model = {
     .name = "model",
     .arguments = "SCENE.masu [options]",
     .summary = "compute each pass's bytes, operations, and least time on five classes of GPU",
-    .details =
-        "Renders each rung with counters in all shaders, and divides the counts by the peak rates of five\n"
-        "classes of GPU. All times are computed; no GPU is needed.\n",
+    .details = "Renders each rung with counters in all shaders, and divides the counts by the peak "
+               "rates of five\n"
+               "classes of GPU. All times are computed; no GPU is needed.\n",
     .run = run};

@@ -78,7 +78,8 @@ static void plot(FILE *to, const sim_model *p, const sim_controller *const *list
                 half ? "scale" : "ms (dashed: budget)", half ? "0.35:1.05" : "0:*");
         for (uint32_t c = 0; c < count; c++) {
             uint32_t line = count - c; /* ours on top */
-            fprintf(to, "'-' with lines lw %s lt %" PRIu32 " title ", line == 1 ? "2" : "0.7", line);
+            fprintf(to, "'-' with lines lw %s lt %" PRIu32 " title ", line == 1 ? "2" : "0.7",
+                    line);
             masu_gnuplot_quote(to, list[line - 1]->name);
             fprintf(to, " noenhanced%s", line > 1 ? ", " : "\n");
         }
@@ -113,9 +114,11 @@ static int draw_script(script *s, const options *o) {
     masu_gnuplot_end end = MASU_GNUPLOT_FAILED;
     if (!fclose(s->f)) end = masu_gnuplot_run(o->plots, s->text, s->bytes);
     free(s->text);
-    if (end == MASU_GNUPLOT_MISSING) masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
-    return end == MASU_GNUPLOT_FAILED ? masu_cli_error("gnuplot could not write the plots to %s", o->plots)
-                                      : MASU_CLI_OK;
+    if (end == MASU_GNUPLOT_MISSING)
+        masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
+    return end == MASU_GNUPLOT_FAILED
+               ? masu_cli_error("gnuplot could not write the plots to %s", o->plots)
+               : MASU_CLI_OK;
 }
 
 /* ---- Rows ------------------------------------------------------------------------------------ */
@@ -135,7 +138,8 @@ static const masu_column columns[] = {
     {NULL, NULL, "", NULL},
     {NULL, NULL, NULL, NULL}};
 
-static void add_row(masu_table *t, const sim_model *p, const char *name, const row *r, uint32_t seeds) {
+static void add_row(masu_table *t, const sim_model *p, const char *name, const row *r,
+                    uint32_t seeds) {
     char settle[32] = "never";
     if (r->unsettled < seeds) snprintf(settle, sizeof settle, "%.1f", r->settle);
     const double numbers[] = {p->frames, r->over, r->changes, r->late, r->scale};
@@ -246,9 +250,11 @@ const masu_cli_command lab_simulate = {
     .name = "simulate",
     .arguments = "[TRACE.csv...] [options], or --record SCENE.masu TRACE.csv [options]",
     .summary = "run the governor and other engines' controllers on simulated GPUs",
-    .details =
-        "over: frames longer than the budget. changes: of the scale. settle: frames from the model's\n"
-        "event until 30 in a row keep the budget and the scale does not fall. oracle: the mean scale\n"
-        "with all times known in advance. Traces are times of a recorded scene: a line \"frame,SCALE,...\",\n"
-        "then a line per frame (lab/simulate/traces).\n",
+    .details = "over: frames longer than the budget. changes: of the scale. settle: frames from "
+               "the model's\n"
+               "event until 30 in a row keep the budget and the scale does not fall. oracle: the "
+               "mean scale\n"
+               "with all times known in advance. Traces are times of a recorded scene: a line "
+               "\"frame,SCALE,...\",\n"
+               "then a line per frame (lab/simulate/traces).\n",
     .run = run};

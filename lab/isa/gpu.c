@@ -176,7 +176,8 @@ static bool use_driver(const masu_isa_gpu *gpu, const char *icd, char *error, si
     }
 }
 
-bool masu_isa_gpu_environment(const masu_isa_gpu *gpu, const char *icd, char *error, size_t error_size) {
+bool masu_isa_gpu_environment(const masu_isa_gpu *gpu, const char *icd, char *error,
+                              size_t error_size) {
     masu_isa_gpu_leave();
     enter();
     /* A cached shader has no statistics. */

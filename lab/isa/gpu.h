@@ -41,7 +41,8 @@ const masu_isa_gpu *masu_isa_gpu_find(const char *name); /* NULL: no such GPU */
 /* Sets the environment of later child processes for this GPU; the file at `icd`, a new one,
  * describes drivers that are not installed to the loader. On false its driver is missing, and
  * `error` holds the reason. */
-bool masu_isa_gpu_environment(const masu_isa_gpu *gpu, const char *icd, char *error, size_t error_size);
+bool masu_isa_gpu_environment(const masu_isa_gpu *gpu, const char *icd, char *error,
+                              size_t error_size);
 
 /* Restores the environment. */
 void masu_isa_gpu_leave(void);

@@ -40,23 +40,24 @@ static bool compile(masu_desc *desc, char *error, size_t size) {
     return false;
 }
 
-bool masu_isa_compile(const masu_desc *given, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
-                      size_t error_size) {
+bool masu_isa_compile(const masu_desc *given, void (*before)(const char *pass), masu_isa_rows *rows,
+                      char *error, size_t error_size) {
     masu_null_device device;
     masu_desc desc = *given;
     desc.bytes = sizeof desc;
     memset(rows, 0, sizeof *rows);
     if (!masu_null_device_open(&device, before, rows, error, error_size)) return false;
-    desc.vulkan = (masu_vulkan){.get_instance_proc_addr = masu_null_get_instance_proc_addr,
-                                .instance = device.instance,
-                                .physical_device = device.physical,
-                                .device = device.device,
-                                .queue_family = device.family,
-                                .texture_compression_bc = device.compressed,
-                                .max_anisotropy = desc.vulkan.max_anisotropy > device.most_anisotropy
-                                                      ? device.most_anisotropy
-                                                      : desc.vulkan.max_anisotropy,
-                                .shader_float16 = device.float16};
+    desc.vulkan =
+        (masu_vulkan){.get_instance_proc_addr = masu_null_get_instance_proc_addr,
+                      .instance = device.instance,
+                      .physical_device = device.physical,
+                      .device = device.device,
+                      .queue_family = device.family,
+                      .texture_compression_bc = device.compressed,
+                      .max_anisotropy = desc.vulkan.max_anisotropy > device.most_anisotropy
+                                            ? device.most_anisotropy
+                                            : desc.vulkan.max_anisotropy,
+                      .shader_float16 = device.float16};
     desc.ray_query = MASU_OFF; /* these GPUs use the built-in BVH */
     desc.debug.labels = 1;     /* names, from which rows get their pass */
     give_targets(&desc);
@@ -102,7 +103,8 @@ bool masu_isa_receive(const char *text, masu_isa_rows *rows) {
     memset(rows, 0, sizeof *rows);
     for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL) {
         if (strncmp(line, "isa\t", 4)) continue;
-        if (rows->count == MASU_ISA_ROWS || !receive_row(line + 4, &rows->row[rows->count])) return false;
+        if (rows->count == MASU_ISA_ROWS || !receive_row(line + 4, &rows->row[rows->count]))
+            return false;
         rows->count++;
     }
     return true;

@@ -66,8 +66,8 @@ typedef struct masu_isa_rows {
  * but no device or targets. `before` is called with the pass of the next pipelines, so that a
  * compiler crash can be attributed to it. On true the renderer and its device still exist: the
  * process must end by _Exit. On false `error` holds one line. */
-bool masu_isa_compile(const masu_desc *desc, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
-                      size_t error_size);
+bool masu_isa_compile(const masu_desc *desc, void (*before)(const char *pass), masu_isa_rows *rows,
+                      char *error, size_t error_size);
 
 /* Writes rows to a pipe: one line each, which starts with "isa\t". */
 bool masu_isa_send(const masu_isa_rows *rows, FILE *f);

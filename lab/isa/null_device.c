@@ -181,7 +181,8 @@ static void read_pipeline(VkPipeline pipeline, uint32_t first) {
 }
 
 /* Neither gives the renderer's cache to the driver: a cached shader has no statistics. */
-static VKAPI_ATTR VkResult VKAPI_CALL create_compute(VkDevice device, VkPipelineCache cache, uint32_t n,
+static VKAPI_ATTR VkResult VKAPI_CALL create_compute(VkDevice device, VkPipelineCache cache,
+                                                     uint32_t n,
                                                      const VkComputePipelineCreateInfo *info,
                                                      const VkAllocationCallbacks *allocator,
                                                      VkPipeline *out) {
@@ -197,7 +198,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_compute(VkDevice device, VkPipeline
     return r;
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL create_graphics(VkDevice device, VkPipelineCache cache, uint32_t n,
+static VKAPI_ATTR VkResult VKAPI_CALL create_graphics(VkDevice device, VkPipelineCache cache,
+                                                      uint32_t n,
                                                       const VkGraphicsPipelineCreateInfo *info,
                                                       const VkAllocationCallbacks *allocator,
                                                       VkPipeline *out) {
@@ -213,10 +215,13 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_graphics(VkDevice device, VkPipelin
     return r;
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL set_name(VkDevice device, const VkDebugUtilsObjectNameInfoEXT *info) {
+static VKAPI_ATTR VkResult VKAPI_CALL set_name(VkDevice device,
+                                               const VkDebugUtilsObjectNameInfoEXT *info) {
     (void)device;
-    if (info->objectType == VK_OBJECT_TYPE_PIPELINE_LAYOUT && null.before) null.before(info->pObjectName);
-    for (uint32_t i = null.pipeline_count; i-- > 0 && info->objectType == VK_OBJECT_TYPE_PIPELINE;) {
+    if (info->objectType == VK_OBJECT_TYPE_PIPELINE_LAYOUT && null.before)
+        null.before(info->pObjectName);
+    for (uint32_t i = null.pipeline_count;
+         i-- > 0 && info->objectType == VK_OBJECT_TYPE_PIPELINE;) {
         if ((uint64_t)(uintptr_t)null.pipelines[i].handle != info->objectHandle) continue;
         for (uint32_t k = 0; k < null.pipelines[i].count; k++) {
             masu_isa_row *row = &null.rows->row[null.pipelines[i].first + k];
@@ -241,14 +246,16 @@ static thing *make_thing(uint64_t bytes) {
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBufferCreateInfo *info,
-                                                    const VkAllocationCallbacks *allocator, VkBuffer *out) {
+                                                    const VkAllocationCallbacks *allocator,
+                                                    VkBuffer *out) {
     (void)device, (void)allocator;
     *out = (VkBuffer)(uintptr_t)make_thing(info->size);
     return *out ? VK_SUCCESS : VK_ERROR_OUT_OF_HOST_MEMORY;
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImageCreateInfo *info,
-                                                   const VkAllocationCallbacks *allocator, VkImage *out) {
+                                                   const VkAllocationCallbacks *allocator,
+                                                   VkImage *out) {
     (void)device, (void)allocator;
     uint64_t texels = (uint64_t)info->extent.width * info->extent.height * info->extent.depth;
     *out = (VkImage)(uintptr_t)make_thing(texels * info->arrayLayers * (info->mipLevels > 1 ? 2 : 1) *
@@ -268,29 +275,32 @@ static VKAPI_ATTR void VKAPI_CALL destroy_image(VkDevice device, VkImage image,
     free((void *)(uintptr_t)image);
 }
 
-static VKAPI_ATTR void VKAPI_CALL buffer_needs(VkDevice device, VkBuffer buffer, VkMemoryRequirements *out) {
+static VKAPI_ATTR void VKAPI_CALL buffer_needs(VkDevice device, VkBuffer buffer,
+                                               VkMemoryRequirements *out) {
     (void)device;
     *out = (VkMemoryRequirements){((const thing *)(uintptr_t)buffer)->bytes, ALIGNMENT, 1};
 }
 
-static VKAPI_ATTR void VKAPI_CALL image_needs(VkDevice device, VkImage image, VkMemoryRequirements *out) {
+static VKAPI_ATTR void VKAPI_CALL image_needs(VkDevice device, VkImage image,
+                                              VkMemoryRequirements *out) {
     (void)device;
     *out = (VkMemoryRequirements){((const thing *)(uintptr_t)image)->bytes, ALIGNMENT, 1};
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL bind_buffer(VkDevice device, VkBuffer buffer, VkDeviceMemory memory,
-                                                  VkDeviceSize offset) {
+static VKAPI_ATTR VkResult VKAPI_CALL bind_buffer(VkDevice device, VkBuffer buffer,
+                                                  VkDeviceMemory memory, VkDeviceSize offset) {
     (void)device, (void)buffer, (void)memory, (void)offset;
     return VK_SUCCESS;
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL bind_image(VkDevice device, VkImage image, VkDeviceMemory memory,
-                                                 VkDeviceSize offset) {
+static VKAPI_ATTR VkResult VKAPI_CALL bind_image(VkDevice device, VkImage image,
+                                                 VkDeviceMemory memory, VkDeviceSize offset) {
     (void)device, (void)image, (void)memory, (void)offset;
     return VK_SUCCESS;
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device, const VkMemoryAllocateInfo *info,
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
+                                                      const VkMemoryAllocateInfo *info,
                                                       const VkAllocationCallbacks *allocator,
                                                       VkDeviceMemory *out) {
     (void)device, (void)allocator;
@@ -305,14 +315,16 @@ static VKAPI_ATTR void VKAPI_CALL free_memory(VkDevice device, VkDeviceMemory me
     free((void *)(uintptr_t)memory);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset,
-                                                 VkDeviceSize size, VkMemoryMapFlags flags, void **out) {
+static VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory,
+                                                 VkDeviceSize offset, VkDeviceSize size,
+                                                 VkMemoryMapFlags flags, void **out) {
     (void)device, (void)size, (void)flags;
     *out = (char *)(uintptr_t)memory + offset;
     return VK_SUCCESS;
 }
 
-static VKAPI_ATTR void VKAPI_CALL memory_of(VkPhysicalDevice physical, VkPhysicalDeviceMemoryProperties *out) {
+static VKAPI_ATTR void VKAPI_CALL memory_of(VkPhysicalDevice physical,
+                                            VkPhysicalDeviceMemoryProperties *out) {
     (void)physical;
     memset(out, 0, sizeof *out);
     out->memoryTypeCount = out->memoryHeapCount = 1;
@@ -342,7 +354,8 @@ NUMBERED(create_query_pool, destroy_query_pool, VkQueryPool, VkQueryPoolCreateIn
 NUMBERED(create_framebuffer, destroy_framebuffer, VkFramebuffer, VkFramebufferCreateInfo)
 #undef NUMBERED
 
-static VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device, const VkDescriptorSetAllocateInfo *info,
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
+                                                    const VkDescriptorSetAllocateInfo *info,
                                                     VkDescriptorSet *out) {
     (void)device;
     for (uint32_t i = 0; i < info->descriptorSetCount; i++)
@@ -359,8 +372,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_commands(VkDevice device,
     return VK_SUCCESS;
 }
 
-static VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, uint32_t n, const VkWriteDescriptorSet *writes,
-                                              uint32_t copy_count, const VkCopyDescriptorSet *copies) {
+static VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, uint32_t n,
+                                              const VkWriteDescriptorSet *writes,
+                                              uint32_t copy_count,
+                                              const VkCopyDescriptorSet *copies) {
     (void)device, (void)n, (void)writes, (void)copy_count, (void)copies;
 }
 
@@ -440,11 +455,14 @@ static bool complain(char *error, size_t size, const char *what) {
 }
 
 static bool open_physical(masu_null_device *d, char *error, size_t size) {
-    VkApplicationInfo app = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_1};
-    VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &app};
+    VkApplicationInfo app = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                             .apiVersion = VK_API_VERSION_1_1};
+    VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                 .pApplicationInfo = &app};
     uint32_t n = 1, families = 16;
     VkQueueFamilyProperties list[16];
-    if (vkCreateInstance(&info, NULL, &d->instance)) return complain(error, size, "there is no Vulkan driver");
+    if (vkCreateInstance(&info, NULL, &d->instance))
+        return complain(error, size, "there is no Vulkan driver");
     VkResult r = vkEnumeratePhysicalDevices(d->instance, &n, &d->physical);
     if (r < 0 || !n) return complain(error, size, "the driver has no device");
     vkGetPhysicalDeviceProperties(d->physical, &d->properties);
@@ -461,8 +479,10 @@ static bool open_device(masu_null_device *d, char *error, size_t size) {
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR};
     VkPhysicalDeviceShaderFloat16Int8Features halves = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES, .pNext = &statistics};
-    VkPhysicalDeviceFeatures2 has = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &halves};
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES,
+        .pNext = &statistics};
+    VkPhysicalDeviceFeatures2 has = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                     .pNext = &halves};
     const char *const extensions[] = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME,
                                       VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME};
     float priority = 1.0f;
@@ -475,7 +495,8 @@ static bool open_device(masu_null_device *d, char *error, size_t size) {
         return complain(error, size, "the driver has no VK_KHR_pipeline_executable_properties");
     d->compressed = has.features.textureCompressionBC;
     d->float16 = halves.shaderFloat16;
-    d->most_anisotropy = has.features.samplerAnisotropy ? d->properties.limits.maxSamplerAnisotropy : 0.0f;
+    d->most_anisotropy =
+        has.features.samplerAnisotropy ? d->properties.limits.maxSamplerAnisotropy : 0.0f;
     VkPhysicalDeviceFeatures features = {.samplerAnisotropy = has.features.samplerAnisotropy,
                                          .textureCompressionBC = has.features.textureCompressionBC};
     halves.shaderInt8 = VK_FALSE;
@@ -491,8 +512,8 @@ static bool open_device(masu_null_device *d, char *error, size_t size) {
     return true;
 }
 
-bool masu_null_device_open(masu_null_device *device, void (*before)(const char *pass), masu_isa_rows *rows,
-                           char *error, size_t error_size) {
+bool masu_null_device_open(masu_null_device *device, void (*before)(const char *pass),
+                           masu_isa_rows *rows, char *error, size_t error_size) {
     memset(device, 0, sizeof *device);
     memset(&null, 0, sizeof null);
     if (!open_physical(device, error, error_size) || !open_device(device, error, error_size)) {

@@ -26,8 +26,8 @@ typedef struct masu_null_device {
 /* Opens the first device, with pipeline statistics. The statistics of each pipeline are added to
  * `rows` under the renderer's name, so it must be opened before the renderer is created. `before`
  * (or NULL): as in isa.h. */
-bool masu_null_device_open(masu_null_device *device, void (*before)(const char *pass), masu_isa_rows *rows,
-                           char *error, size_t error_size);
+bool masu_null_device_open(masu_null_device *device, void (*before)(const char *pass),
+                           masu_isa_rows *rows, char *error, size_t error_size);
 void masu_null_device_close(masu_null_device *device);
 
 /* The vkGetInstanceProcAddr for the renderer. */

@@ -139,7 +139,8 @@ static void add_data(FILE *f, const masu_meso_study *study) {
     fprintf(f, "end\n$shadow << end\n");
     for (uint32_t i = 0; i < MASU_MESO_BINS; i++) {
         if (!(study->bins[i].count > 100)) continue;
-        fprintf(f, "%.4f %.4f %.4f\n", masu_meso_bin_value(i), study->bins[i].lit, fitted_shadow(i));
+        fprintf(f, "%.4f %.4f %.4f\n", masu_meso_bin_value(i), study->bins[i].lit,
+                fitted_shadow(i));
     }
     fprintf(f, "end\n$error << end\n");
     for (uint32_t i = 0; i < MASU_MESO_JUDGED; i++) {
@@ -180,8 +181,8 @@ bool masu_meso_write_plots(const char *name, const masu_meso_study *study) {
     for (size_t i = 0; i < sizeof plots / sizeof *plots; i++) {
         fprintf(f, "set output ");
         masu_gnuplot_quote(f, path_of(name, plots[i].end));
-        fprintf(f, "\nset title '%s'\nset ylabel '%s'\nset yrange [%s]\n", plots[i].title, plots[i].y,
-                i == 1 || i == 2 ? "0:1.05" : "*:*");
+        fprintf(f, "\nset title '%s'\nset ylabel '%s'\nset yrange [%s]\n", plots[i].title,
+                plots[i].y, i == 1 || i == 2 ? "0:1.05" : "*:*");
         fprintf(f, "set xlabel '%s'\n",
                 i < 3    ? "cosine between view and polygon"
                 : i == 3 ? "offset - alpha (1 - AO)"
@@ -191,7 +192,8 @@ bool masu_meso_write_plots(const char *name, const masu_meso_study *study) {
     masu_gnuplot_end end = MASU_GNUPLOT_FAILED;
     if (!fclose(f)) end = masu_gnuplot_run(NULL, commands, bytes);
     free(commands);
-    if (end == MASU_GNUPLOT_MISSING) masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
+    if (end == MASU_GNUPLOT_MISSING)
+        masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
     if (end == MASU_GNUPLOT_FAILED) masu_cli_error("gnuplot could not write %s_*.svg", name);
     return end != MASU_GNUPLOT_FAILED;
 }

@@ -8,9 +8,11 @@
  * share their pipelines, which are named "cascade_0" or "cascades, masks". */
 static uint32_t pass_of(const char *pipeline) {
     size_t length = strcspn(pipeline, ",");
-    if (length == strlen("cascades") && !strncmp(pipeline, "cascades", length)) return MASU_PASS_CASCADE_0;
+    if (length == strlen("cascades") && !strncmp(pipeline, "cascades", length))
+        return MASU_PASS_CASCADE_0;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (strlen(masu_passes[p].name) == length && !strncmp(masu_passes[p].name, pipeline, length))
+        if (strlen(masu_passes[p].name) == length &&
+            !strncmp(masu_passes[p].name, pipeline, length))
             return masu_is_cascade(p) ? MASU_PASS_CASCADE_0 : p;
     }
     return MASU_PASS_COUNT;
@@ -46,7 +48,8 @@ void masu_issued_make(const masu_isa_rows *rows, masu_issued *out) {
         uint32_t p = pass_of(rows->row[i].pipeline);
         if (p == MASU_PASS_COUNT || !counts(rows, i) || isnan(v[MASU_ISA_INSTRUCTIONS])) continue;
         bool twice = rows->row[i].lanes > WIDEST && strstr(rows->row[i].stage, "SIMD");
-        out->pass[p].instructions[is_vertex(&rows->row[i])] += v[MASU_ISA_INSTRUCTIONS] * (twice ? 0.5 : 1.0);
+        out->pass[p].instructions[is_vertex(&rows->row[i])] +=
+            v[MASU_ISA_INSTRUCTIONS] * (twice ? 0.5 : 1.0);
         double waits = v[MASU_ISA_LATENCY] / (v[MASU_ISA_WAVES] * v[MASU_ISA_CYCLES]);
         if (waits > out->pass[p].waits) out->pass[p].waits = waits; /* NAN: not reported */
     }

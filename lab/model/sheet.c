@@ -41,7 +41,8 @@ double masu_model_realistic(const masu_model_row *row, uint32_t k) {
     bool by_bytes;
     double floor = masu_model_floor(row, k, &by_bytes);
     if (by_bytes) return floor * bound_by_bytes;
-    return floor * (row->issued[k] > 0.0 ? bound_by_instructions * row->waits[k] : bound_by_operations);
+    return floor *
+           (row->issued[k] > 0.0 ? bound_by_instructions * row->waits[k] : bound_by_operations);
 }
 
 /* ---- Sizes ----------------------------------------------------------------------------------- */
@@ -102,13 +103,14 @@ static double cascade_texels(const masu_frame_plan *plan, uint32_t rung, uint32_
 }
 
 /* Texels of an attachment, or of a copied image. */
-static double attached(const masu_count *c, uint32_t rung, uint32_t pass, masu_usage usage, double texels,
-                       masu_model_row *row) {
+static double attached(const masu_count *c, uint32_t rung, uint32_t pass, masu_usage usage,
+                       double texels, masu_model_row *row) {
     if (usage == MASU_BLEND_COLOR || usage == MASU_KEEP_DEPTH) { /* read and written */
         worsen(&row->bytes_sure, MASU_MODEL_MEASURED);
         return 2.0 * fmin(texels, growth(c, rung, pass) * c->passes[rung][pass].invocations);
     }
-    if (usage == MASU_UPDATE_DEPTH) return cascade_texels(&c->sheet, rung, pass - MASU_PASS_CASCADE_0);
+    if (usage == MASU_UPDATE_DEPTH)
+        return cascade_texels(&c->sheet, rung, pass - MASU_PASS_CASCADE_0);
     return texels; /* attachments and copies are complete */
 }
 
@@ -243,26 +245,29 @@ static void add_operations(const masu_count *c, uint32_t rung, uint32_t pass, ma
 
 /* A shader may have no counted operations, such as a copy: then each invocation executes all
  * instructions. */
-static double instructions(double plain, double invocations, double straight, double instructions_once) {
+static double instructions(double plain, double invocations, double straight,
+                           double instructions_once) {
     return straight > 0.0 ? plain * instructions_once / straight : invocations * instructions_once;
 }
 
-static void add_instructions(const masu_count *c, const masu_issued *issued, uint32_t rung, uint32_t pass,
-                             masu_model_row *row) {
+static void add_instructions(const masu_count *c, const masu_issued *issued, uint32_t rung,
+                             uint32_t pass, masu_model_row *row) {
     const masu_pass_count *counted = &c->passes[rung][pass];
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES && issued; k++) {
         if (!issued[k].known) continue;
         const double *once = issued[k].pass[pass].instructions;
-        row->issued[k] = instructions(growth(c, rung, pass) * counted->plain, row->invocations,
-                                      c->straight[pass][0], once[0]) +
-                         instructions(counted->vertex_plain, counted->vertices, c->straight[pass][1], once[1]);
+        row->issued[k] =
+            instructions(growth(c, rung, pass) * counted->plain, row->invocations,
+                         c->straight[pass][0], once[0]) +
+            instructions(counted->vertex_plain, counted->vertices, c->straight[pass][1], once[1]);
         row->waits[k] = issued[k].pass[pass].waits;
     }
 }
 
 /* ---- Sums ------------------------------------------------------------------------------------ */
 
-static void make_rung(const masu_count *c, const masu_issued *issued, uint32_t rung, masu_model_rung *out) {
+static void make_rung(const masu_count *c, const masu_issued *issued, uint32_t rung,
+                      masu_model_rung *out) {
     const masu_rung_plan *rp = &c->sheet.rungs[rung];
     out->width = rp->render_width;
     out->height = rp->render_height;

@@ -92,9 +92,11 @@ static bool binary(uint32_t op, uint32_t a, uint32_t b, uint32_t *out) {
 }
 
 /* Evaluates an operation; its operands start at w. */
-static uint8_t evaluate(const reach *r, uint32_t op, const uint32_t *w, uint32_t count, uint32_t *out) {
+static uint8_t evaluate(const reach *r, uint32_t op, const uint32_t *w, uint32_t count,
+                        uint32_t *out) {
     uint32_t a = 0, b = 0;
-    uint8_t first = count > 0 ? get(r, w[0], &a) : ANYTHING, second = count > 1 ? get(r, w[1], &b) : ANYTHING;
+    uint8_t first = count > 0 ? get(r, w[0], &a) : ANYTHING,
+            second = count > 1 ? get(r, w[1], &b) : ANYTHING;
     switch (op) {
     case SPIRV_COPY_OBJECT:
     case SPIRV_BITCAST: *out = a; return first;
@@ -105,7 +107,8 @@ static uint8_t evaluate(const reach *r, uint32_t op, const uint32_t *w, uint32_t
     case SPIRV_LOGICAL_AND:
     case SPIRV_LOGICAL_OR:
         *out = op == SPIRV_LOGICAL_OR; /* one operand may decide */
-        if ((first == CONSTANT && !a == !*out) || (second == CONSTANT && !b == !*out)) return CONSTANT;
+        if ((first == CONSTANT && !a == !*out) || (second == CONSTANT && !b == !*out))
+            return CONSTANT;
         break;
     default: break;
     }
@@ -122,7 +125,8 @@ static uint8_t come_together(const reach *r, const spirv_instruction *i, uint32_
         uint32_t value = 0;
         if (i->word[k + 1] < r->m->bound && !r->reached[i->word[k + 1]]) continue;
         uint8_t one = get(r, i->word[k], &value);
-        if (one == ANYTHING || (one == CONSTANT && state == CONSTANT && value != *out)) return ANYTHING;
+        if (one == ANYTHING || (one == CONSTANT && state == CONSTANT && value != *out))
+            return ANYTHING;
         if (one == CONSTANT) *out = value, state = CONSTANT;
     }
     return state;
@@ -194,7 +198,8 @@ static void walk(reach *r) {
         r->inside[k] = block;
         if (!block) continue;
         leave(r, i);
-        if (i->count < 3 || i->word[2] >= r->m->bound || r->m->def[i->word[2]] != i) continue; /* no result */
+        if (i->count < 3 || i->word[2] >= r->m->bound || r->m->def[i->word[2]] != i)
+            continue; /* no result */
         uint8_t state = i->op == SPIRV_PHI ? come_together(r, i, &value)
                         : i->count > 3     ? evaluate(r, i->op, i->word + 3, i->count - 3, &value)
                                            : ANYTHING;
@@ -213,7 +218,8 @@ static void begin(reach *r) {
         bool result = i->count > 2 && i->word[2] < r->m->bound && r->m->def[i->word[2]] == i;
         bool boolean = i->op == SPIRV_CONSTANT_TRUE || i->op == SPIRV_CONSTANT_FALSE ||
                        i->op == SPEC_CONSTANT_TRUE || i->op == SPEC_CONSTANT_FALSE;
-        bool number = boolean || ((i->op == SPIRV_CONSTANT || i->op == SPEC_CONSTANT) && i->count == 4) ||
+        bool number = boolean ||
+                      ((i->op == SPIRV_CONSTANT || i->op == SPEC_CONSTANT) && i->count == 4) ||
                       i->op == SPEC_CONSTANT_OP;
         bool made = function && i->op != SPIRV_FUNCTION_PARAMETER && i->op != SPIRV_FUNCTION;
         if (result && (made || number)) r->state[i->word[2]] = NOTHING;
@@ -235,7 +241,8 @@ bool masu_spirv_reach(const spirv_module *m, const VkSpecializationInfo *special
     return good;
 }
 
-masu_spirv_cost masu_spirv_cost_reached(const spirv_module *m, const VkSpecializationInfo *special) {
+masu_spirv_cost masu_spirv_cost_reached(const spirv_module *m,
+                                        const VkSpecializationInfo *special) {
     masu_spirv_cost sum = {0, 0};
     bool *inside = calloc(m->count ? m->count : 1, sizeof *inside);
     if (!inside || !masu_spirv_reach(m, special, inside)) {

@@ -11,10 +11,12 @@
 
 /* inside[k]: whether instruction k of the module can run, for module->count instructions; false
  * outside functions. special: NULL: the module's defaults. Returns false if there is no memory. */
-bool masu_spirv_reach(const spirv_module *module, const VkSpecializationInfo *special, bool *inside);
+bool masu_spirv_reach(const spirv_module *module, const VkSpecializationInfo *special,
+                      bool *inside);
 
 /* Cost of all instructions that can run, each once, ignoring loops and other branches. Without
  * memory: of all instructions. */
-masu_spirv_cost masu_spirv_cost_reached(const spirv_module *module, const VkSpecializationInfo *special);
+masu_spirv_cost masu_spirv_cost_reached(const spirv_module *module,
+                                        const VkSpecializationInfo *special);
 
 #endif

@@ -11,8 +11,8 @@
 
 /* ---- Ladder ---------------------------------------------------------------------------------- */
 
-static bool read_ladder(const char *path, masu_count_desc *count, masu_model_sheet *out, char *error,
-                        size_t error_size) {
+static bool read_ladder(const char *path, masu_count_desc *count, masu_model_sheet *out,
+                        char *error, size_t error_size) {
     static masu_ladder_file ladder;
     if (!masu_ladder_read(path, &ladder, error, error_size)) return false;
     count->rung_count = ladder.count;
@@ -30,8 +30,8 @@ VkExtent2D masu_model_drawn(VkExtent2D size) {
     return masu_count_size((VkExtent2D){(size.width + 1) / 2, (size.height + 1) / 2});
 }
 
-bool masu_model_run(const masu_model_desc *d, masu_model_sheet *out, uint32_t *messages, char *error,
-                    size_t error_size) {
+bool masu_model_run(const masu_model_desc *d, masu_model_sheet *out, uint32_t *messages,
+                    char *error, size_t error_size) {
     masu_count_desc desc = {.scene_path = d->scene_path,
                             .size = d->drawn,
                             .sheet = d->size,
@@ -84,11 +84,15 @@ static const char *const notes[] = {
     "(f). Realistic: 1.3 times if bytes dominate, 2.5 times if operations do.",
     "Compulsory: each image and buffer read once and written once, but only the part that shaders "
     "read; caches are assumed to hold the rest. Vertices, tiles and trees are the scene's.",
-    "Operations: all operations of each invocation, an addition as 1, a reciprocal, root or sine as 4. "
+    "Operations: all operations of each invocation, an addition as 1, a reciprocal, root or sine "
+    "as 4. "
     "Idle lanes of a wave, fetches and branches are not included.",
-    "With --isa operations are instructions of the class's compiler, one per lane and clock: each operation "
-    "counts as the mean number of instructions per operation in the pass's pipelines. Realistic is then 1.5 "
-    "times the floor, times the ratio of RADV's latency to the latency that its waves hide, if above 1.",
+    "With --isa operations are instructions of the class's compiler, one per lane and clock: each "
+    "operation "
+    "counts as the mean number of instructions per operation in the pass's pipelines. Realistic is "
+    "then 1.5 "
+    "times the floor, times the ratio of RADV's latency to the latency that its waves hide, if "
+    "above 1.",
     "exact: every pixel takes the same branches; measured here: counted while the scene was drawn; "
     "estimated: textures at 1.25 new texels a fetch, or fragments behind a discard.",
     "Nothing here was measured on a GPU of these classes. A measured ratio is for the driver that "
@@ -104,7 +108,8 @@ bool masu_model_print(const masu_model_sheet *m, FILE *f) {
         fprintf(f, "counts per pixel are scaled to the sheet's pixels\n");
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
         if (m->issued[k])
-            fprintf(f, "%s: instructions by the compiler of %s\n", masu_model_classes[k].name, masu_model_classes[k].gpu);
+            fprintf(f, "%s: instructions by the compiler of %s\n", masu_model_classes[k].name,
+                    masu_model_classes[k].gpu);
     }
     fprintf(f, "\nCOMPUTED: rung 0, %s, %ux%u rendered; floor in ms\n", first->name, first->width,
             first->height);
@@ -191,7 +196,9 @@ bool masu_model_csv(const masu_model_sheet *m, FILE *f) {
 
 /* columns: markup from this file. */
 static void put_head(FILE *f, const char *caption, const char *columns) {
-    masu_markup(f, "<div class=\"wide\"><table>\n<caption>COMPUTED, not measured: %s</caption>\n<tr>", caption);
+    masu_markup(f,
+                "<div class=\"wide\"><table>\n<caption>COMPUTED, not measured: %s</caption>\n<tr>",
+                caption);
     fputs(columns, f);
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++)
         masu_markup(f, "<th title=\"%s\">%s</th>", masu_model_classes[k].what,
@@ -258,15 +265,17 @@ static void put_chosen(const masu_model_sheet *m, FILE *f) {
 }
 
 bool masu_model_xhtml(const masu_model_sheet *m, FILE *f) {
-    masu_markup(f,
-            "<section id=\"model\">\n<h2>Model sheet: computed, not measured</h2>\n"
-            "<p>Computed times of each pass on five classes of GPU, at %ux%u. Counted at %ux%u on %s",
-            m->sheet.width, m->sheet.height, m->drawn.width, m->drawn.height, m->driver);
+    masu_markup(
+        f,
+        "<section id=\"model\">\n<h2>Model sheet: computed, not measured</h2>\n"
+        "<p>Computed times of each pass on five classes of GPU, at %ux%u. Counted at %ux%u on %s",
+        m->sheet.width, m->sheet.height, m->drawn.width, m->drawn.height, m->driver);
     fputs("; counts per pixel are scaled to the sheet's pixels.</p>\n", f);
     put_chosen(m, f);
     put_rungs(m, f);
     put_passes(m, 0, f);
-    for (size_t i = 0; i < sizeof notes / sizeof *notes; i++) masu_markup(f, "<p>%s</p>\n", notes[i]);
+    for (size_t i = 0; i < sizeof notes / sizeof *notes; i++)
+        masu_markup(f, "<p>%s</p>\n", notes[i]);
     fputs("</section>\n", f);
     return !ferror(f);
 }

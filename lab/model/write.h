@@ -23,8 +23,8 @@ VkExtent2D masu_model_drawn(VkExtent2D size);
 
 /* Renders, counts and computes. `messages`: of the validation layer; may be NULL. On false `error`
  * holds one line. */
-bool masu_model_run(const masu_model_desc *desc, masu_model_sheet *out, uint32_t *messages, char *error,
-                    size_t error_size);
+bool masu_model_run(const masu_model_desc *desc, masu_model_sheet *out, uint32_t *messages,
+                    char *error, size_t error_size);
 
 /* All return false if writing failed. */
 bool masu_model_print(const masu_model_sheet *model, FILE *f);

@@ -56,8 +56,11 @@ static double sheen_integral(double roughness, double cosine) {
     ref_vec v = ref_v(sqrt(1 - z * z), 0, z);
     for (int i = 0; i < STEPS; i++) {
         for (int k = 0; k < STEPS; k++) {
-            double u = (i + 0.5) / STEPS, up = u * u, phi = REF_PI * (k + 0.5) / STEPS, flat = sqrt(1 - up * up);
-            sum += 2 * u * sheen_lobe(sheen_alpha_of(roughness), v, ref_v(flat * cos(phi), flat * sin(phi), up));
+            double u = (i + 0.5) / STEPS, up = u * u, phi = REF_PI * (k + 0.5) / STEPS,
+                   flat = sqrt(1 - up * up);
+            sum += 2 * u *
+                   sheen_lobe(sheen_alpha_of(roughness), v,
+                              ref_v(flat * cos(phi), flat * sin(phi), up));
         }
     }
     return fmin(sum / STEPS / STEPS * 2 * REF_PI, 1);
@@ -74,7 +77,8 @@ static double sheen_albedo(double roughness, double cosine) {
         i = count++ % KEPT;
         if (count > KEPT) count = KEPT;
         of[i] = roughness;
-        for (int k = 0; k <= COSINES; k++) table[i][k] = sheen_integral(roughness, (double)k * k / COSINES / COSINES);
+        for (int k = 0; k <= COSINES; k++)
+            table[i][k] = sheen_integral(roughness, (double)k * k / COSINES / COSINES);
     }
     double at = sqrt(ref_clamp(cosine, 0, 1)) * COSINES;
     int left = at < COSINES - 1 ? (int)at : COSINES - 1;
@@ -83,7 +87,9 @@ static double sheen_albedo(double roughness, double cosine) {
 
 /* ---- Grain: GGX with two alphas; x of the frame is along it ---------------------------------- */
 
-static ref_vec stretched(const ref_bsdf *b, ref_vec w) { return ref_v(b->along * w.x, b->alpha * w.y, w.z); }
+static ref_vec stretched(const ref_bsdf *b, ref_vec w) {
+    return ref_v(b->along * w.x, b->alpha * w.y, w.z);
+}
 
 static double grain_lambda(const ref_bsdf *b, ref_vec w) {
     double x = b->along * w.x, y = b->alpha * w.y;
@@ -149,7 +155,8 @@ void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk) {
     if (s->anisotropy > 0) {
         ref_vec along = ref_along(s->grain, -ref_dot(s->grain, s->normal), s->normal);
         if (ref_dot(along, along) > 1e-12)
-            b->base = (ref_frame){ref_unit(along), ref_cross(s->normal, ref_unit(along)), s->normal};
+            b->base =
+                (ref_frame){ref_unit(along), ref_cross(s->normal, ref_unit(along)), s->normal};
     }
     b->over = ref_frame_of(s->coat_normal);
     b->v = ref_to(&b->base, v);
@@ -164,8 +171,9 @@ void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk) {
     double f0 = 0.08 * ref_clamp(s->specular, 0, 12.5), m = ref_clamp(s->metallic, 0, 1);
     b->matte = (ref_fresnel){ref_splat(f0), fmin(50 * f0, 1)};
     b->metal = (ref_fresnel){s->albedo, fmin(50 * ref_max(s->albedo), 1)};
-    b->mixed = (ref_fresnel){ref_mix(ref_scale(ref_max(s->hue) > 0 ? s->hue : ref_splat(1), f0), b->metal.f0, m),
-                             b->matte.f90 + m * (b->metal.f90 - b->matte.f90)};
+    b->mixed = (ref_fresnel){
+        ref_mix(ref_scale(ref_max(s->hue) > 0 ? s->hue : ref_splat(1), f0), b->metal.f0, m),
+        b->matte.f90 + m * (b->metal.f90 - b->matte.f90)};
     ref_albedo average = ref_ggx_average(b->mean_rough);
     b->matte_rest = rest_of(f0, b->matte.f90, average.white);
     ref_vec a = s->albedo;
@@ -206,7 +214,8 @@ ref_lobes ref_bsdf_albedo(const ref_bsdf *b) {
     out.of[REF_SOFT] = ref_add(diffuse, ref_scale(b->rest_color, s->lost));
     for (int i = 0; i < REF_LOBES; i++) out.of[i] = ref_scale(out.of[i], b->bared);
     if (b->sheen_most > 0)
-        out.of[REF_SOFT] = ref_add(out.of[REF_SOFT], ref_scale(b->s.sheen, (1 - b->bared) / b->sheen_most));
+        out.of[REF_SOFT] =
+            ref_add(out.of[REF_SOFT], ref_scale(b->s.sheen, (1 - b->bared) / b->sheen_most));
     return out;
 }
 
@@ -243,7 +252,8 @@ ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec light, ref_random *r) {
     if (b->sheen_most > 0) {
         double bared = fmin(b->bared, 1 - b->sheen_most * sheen_albedo(b->s.sheen_roughness, l.z));
         for (int i = 0; i < REF_LOBES; i++) out.of[i] = ref_scale(out.of[i], bared);
-        out.of[REF_SOFT] = ref_along(out.of[REF_SOFT], sheen_lobe(b->sheen_alpha, b->v, l), b->s.sheen);
+        out.of[REF_SOFT] =
+            ref_along(out.of[REF_SOFT], sheen_lobe(b->sheen_alpha, b->v, l), b->s.sheen);
     }
     return out;
 }
@@ -251,7 +261,8 @@ ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec light, ref_random *r) {
 double ref_bsdf_pdf(const ref_bsdf *b, ref_vec light) {
     ref_vec l = ref_to(&b->base, light), over = ref_to(&b->over, light);
     double pdf = 0;
-    if (l.z > 0) pdf += b->pick[REF_BASE] * (b->grained ? grain_pdf(b, l) : ref_ggx_pdf(b->alpha, b->v, l));
+    if (l.z > 0)
+        pdf += b->pick[REF_BASE] * (b->grained ? grain_pdf(b, l) : ref_ggx_pdf(b->alpha, b->v, l));
     if (over.z > 0 && b->pick[REF_COAT] > 0)
         pdf += b->pick[REF_COAT] * ref_ggx_pdf(b->coat_alpha, b->v_over, over);
     if (l.z > 0) pdf += b->pick[REF_SOFT] * l.z / REF_PI;

@@ -29,8 +29,8 @@ typedef struct ref_field {
     int (*part)(const double *params, double time, const double p[3]);
     double (*part_distance)(const double *params, double time, const double p[3], int part);
     void (*material)(int part, double out[8]);
-    void (*look)(const double *params, double time, int part, const double p[3], const double n[3], double width,
-                 double out[8]);
+    void (*look)(const double *params, double time, int part, const double p[3], const double n[3],
+                 double width, double out[8]);
     /* A GLSL source, or the GLSL parts of a .sdf source */
     ref_library glsl;
     ref_glsl_run *run; /* NULL: no GLSL */

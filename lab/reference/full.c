@@ -33,8 +33,8 @@ static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
 }
 
-static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const bool *direct,
-                           ref_random *r, ref_lobes *out) {
+static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b,
+                           const bool *direct, ref_random *r, ref_lobes *out) {
     const ref_scene *s = t->world->scene;
     double which = ref_draw(r);
     double u = ref_draw(r);

@@ -203,7 +203,8 @@ static void color_at(const ref_world *w, uint32_t triangle, double u, double v, 
     const ref_triangle *t = &w->scene->triangles[triangle];
     for (int k = 0; k < 4; k++) {
         const float *c = w->scene->colors ? w->scene->colors + k : NULL;
-        out[k] = c ? (1 - u - v) * (double)c[4 * (size_t)t->vertex[0]] + u * (double)c[4 * (size_t)t->vertex[1]] +
+        out[k] = c ? (1 - u - v) * (double)c[4 * (size_t)t->vertex[0]] +
+                         u * (double)c[4 * (size_t)t->vertex[1]] +
                          v * (double)c[4 * (size_t)t->vertex[2]]
                    : 1;
     }
@@ -219,7 +220,8 @@ ref_vec ref_world_emission(const ref_world *w, uint32_t triangle, double u, doub
     double texel[4] = {1, 1, 1, 1}, color[4] = {1, 1, 1, 1};
     if (m->flags & 1u << MASU_SLOT_EMISSIVE) map_at(w, triangle, MASU_SLOT_EMISSIVE, u, v, texel);
     if (is_unlit(m)) color_at(w, triangle, u, v, color);
-    return ref_mul(m->emissive, ref_v(texel[0] * color[0], texel[1] * color[1], texel[2] * color[2]));
+    return ref_mul(m->emissive,
+                   ref_v(texel[0] * color[0], texel[1] * color[1], texel[2] * color[2]));
 }
 
 /* n, rotated until it faces v: normals of coarse meshes and maps may point away. least: minimum
@@ -231,13 +233,15 @@ static ref_vec facing(ref_vec n, ref_vec v, double least) {
 
 /* glTF's tangent space: unit gradients of u and v on the plane of n; +y of the map is up,
  * against v. */
-static ref_vec from_tangents(const ref_world *w, const ref_hit *hit, ref_vec n, uint32_t slot, double x, double y) {
+static ref_vec from_tangents(const ref_world *w, const ref_hit *hit, ref_vec n, uint32_t slot,
+                             double x, double y) {
     const ref_scene *s = w->scene;
     const ref_triangle *t = &s->triangles[hit->triangle];
     double uv[3][2], z = sqrt(fmax(1 - x * x - y * y, 0));
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++)
-            uv[i][k] = (double)texcoords_of(s, &s->materials[t->material], slot)[2 * (size_t)t->vertex[i] + (size_t)k];
+            uv[i][k] = (double)texcoords_of(s, &s->materials[t->material],
+                                            slot)[2 * (size_t)t->vertex[i] + (size_t)k];
     ref_vec a = s->positions[t->vertex[0]];
     ref_vec e1 = ref_sub(s->positions[t->vertex[1]], a),
             e2 = ref_sub(s->positions[t->vertex[2]], a);
@@ -262,21 +266,27 @@ static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n, uint32_t 
 }
 
 /* Lobes of blob.h other than the basic ones. */
-static void look_at_lobes(const ref_world *w, const ref_hit *hit, ref_vec n, const ref_material *m, ref_surface *s) {
+static void look_at_lobes(const ref_world *w, const ref_hit *hit, ref_vec n, const ref_material *m,
+                          ref_surface *s) {
     double texel[4] = {1, 1, 1, 1}, opaque = !(m->flags & MASU_MATERIAL_IS_BLEND);
-    if (opaque && m->flags & MASU_MATERIAL_LOBE_MAP) map_at(w, hit->triangle, MASU_SLOT_COAT, hit->u, hit->v, texel);
+    if (opaque && m->flags & MASU_MATERIAL_LOBE_MAP)
+        map_at(w, hit->triangle, MASU_SLOT_COAT, hit->u, hit->v, texel);
     s->sheen_roughness = m->sheen_roughness;
     s->anisotropy = m->anisotropy;
     if (ref_max(m->sheen_color) > 0) {
         s->sheen = ref_mul(m->sheen_color, ref_v(texel[0], texel[1], texel[2]));
         s->sheen_roughness *= texel[3];
     } else {
-        ref_vec f0 = ref_scale(ref_mul(ref_max(m->specular_color) > 0 ? m->specular_color : ref_splat(1), ref_v(texel[0], texel[1], texel[2])), m->specular * texel[3]);
+        ref_vec f0 =
+            ref_scale(ref_mul(ref_max(m->specular_color) > 0 ? m->specular_color : ref_splat(1),
+                              ref_v(texel[0], texel[1], texel[2])),
+                      m->specular * texel[3]);
         s->specular = ref_max(f0);
         s->hue = ref_scale(f0, 1 / fmax(s->specular, 1e-9));
     }
     if (m->anisotropy > 0)
-        s->grain = from_tangents(w, hit, n, MASU_SLOT_BASE, cos(m->anisotropy_rotation), sin(m->anisotropy_rotation));
+        s->grain = from_tangents(w, hit, n, MASU_SLOT_BASE, cos(m->anisotropy_rotation),
+                                 sin(m->anisotropy_rotation));
 }
 
 void ref_world_look(const ref_world *w, const ref_hit *hit, ref_vec v, ref_look *out) {

@@ -77,7 +77,8 @@ static bool capsule_pdf(const ref_light *light, ref_vec to, ref_vec l, to_light 
     ref_vec e = ref_scale(light->direction, 1 / half);
     double le = ref_dot(l, e), ce = ref_dot(to, e);
     ref_vec across = ref_sub(l, ref_scale(e, le)), center = ref_sub(to, ref_scale(e, ce));
-    double a = ref_dot(across, across), b = ref_dot(across, center), c = ref_dot(center, center) - r * r;
+    double a = ref_dot(across, across), b = ref_dot(across, center),
+           c = ref_dot(center, center) - r * r;
     double root = b * b - a * c;
     if (root > 0 && a > 1e-14) {
         double t = (b - sqrt(root)) / a;
@@ -111,7 +112,8 @@ static bool draw(const ref_light *light, ref_vec to, ref_random *r, to_light *ou
     double u = ref_draw(r), v = ref_draw(r), d = ref_length(to);
     if (!(d > 0)) return false;
     if (light->type == MASU_LIGHT_RECTANGLE) {
-        ref_vec at = ref_along(ref_along(to, 2 * u - 1, light->direction), 2 * v - 1, light->half_axis);
+        ref_vec at =
+            ref_along(ref_along(to, 2 * u - 1, light->direction), 2 * v - 1, light->half_axis);
         return rectangle_pdf(light, to, ref_unit(at), out);
     }
     if (light->type == MASU_LIGHT_CAPSULE) {
@@ -148,12 +150,13 @@ static void add_seen(const ref_tracer *t, const ref_hit *hit, const ref_lobes *f
     ref_add_lobes(out, &kept, ref_mul(seen, radiance));
 }
 
-static void add_point(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const ref_light *light,
-                      ref_random *r, ref_lobes *out) {
+static void add_point(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b,
+                      const ref_light *light, ref_random *r, ref_lobes *out) {
     ref_vec l, color = ref_light_at(light, hit->p, &l);
     ref_lobes f = ref_bsdf_eval(b, l, r);
     to_light to = {l, fmax(ref_length(ref_sub(light->position, hit->p)) - light->radius, 0), 1};
-    if (ref_max(ref_lobes_sum(&f)) > 0) add_seen(t, hit, &f, ref_scale(color, REF_PI), &to, NULL, out);
+    if (ref_max(ref_lobes_sum(&f)) > 0)
+        add_seen(t, hit, &f, ref_scale(color, REF_PI), &to, NULL, out);
 }
 
 void ref_local_lights(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,

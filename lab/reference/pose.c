@@ -181,12 +181,15 @@ void ref_pose_instances(const ref_blob *blob, double time, bool animate, double 
 }
 
 /* The weight of a morph target while the first clip of its model plays. */
-static double weight_of(const ref_blob *blob, const masu_blob_skin *skin, uint32_t target, double time, bool animate) {
-    const masu_blob_model *m = (const masu_blob_model *)blob->section[MASU_BLOB_MODELS] + skin->model;
+static double weight_of(const ref_blob *blob, const masu_blob_skin *skin, uint32_t target,
+                        double time, bool animate) {
+    const masu_blob_model *m =
+        (const masu_blob_model *)blob->section[MASU_BLOB_MODELS] + skin->model;
     const masu_blob_clip *clips = blob->section[MASU_BLOB_CLIPS];
     const masu_blob_channel *channels = blob->section[MASU_BLOB_CHANNELS];
     double rest = (double)((const masu_blob_morph_target *)
-                               blob->section[MASU_BLOB_MORPH_TARGETS])[skin->first_target + target].weight;
+                               blob->section[MASU_BLOB_MORPH_TARGETS])[skin->first_target + target]
+                      .weight;
     for (uint64_t i = 0; animate && i < blob->count[MASU_BLOB_CLIPS]; i++) {
         if (clips[i].model != m->like) continue;
         double length = (double)clips[i].duration, t = length > 0 ? fmod(time, length) : 0;
@@ -194,8 +197,8 @@ static double weight_of(const ref_blob *blob, const masu_blob_skin *skin, uint32
         for (uint32_t c = 0; c < clips[i].channel_count; c++) {
             const masu_blob_channel *channel = &channels[clips[i].first_channel + c];
             node_pose pose = {.translation = {0}};
-            if (channel->path != MASU_CHANNEL_WEIGHT || channel->node != skin->node - m->first_node ||
-                channel->target != target)
+            if (channel->path != MASU_CHANNEL_WEIGHT ||
+                channel->node != skin->node - m->first_node || channel->target != target)
                 continue;
             sample(blob->section[MASU_BLOB_KEYS], channel, t, &pose); /* as a translation along x */
             return pose.translation[0];
@@ -206,11 +209,12 @@ static double weight_of(const ref_blob *blob, const masu_blob_skin *skin, uint32
 }
 
 /* Adds the morph targets of a skin to a rest vertex. */
-static void morph(const ref_blob *blob, const masu_blob_skin *skin, uint32_t vertex, const double *weights,
-                  ref_vec *position, double normal[3]) {
+static void morph(const ref_blob *blob, const masu_blob_skin *skin, uint32_t vertex,
+                  const double *weights, ref_vec *position, double normal[3]) {
     const masu_blob_morph_delta *deltas = blob->section[MASU_BLOB_MORPH_DELTAS];
     for (uint32_t t = 0; t < skin->target_count; t++) {
-        const masu_blob_morph_delta *d = &deltas[skin->first_delta + (size_t)t * skin->vertex_count + vertex];
+        const masu_blob_morph_delta *d =
+            &deltas[skin->first_delta + (size_t)t * skin->vertex_count + vertex];
         *position = ref_along(*position, weights[t], ref_of(d->position));
         for (int k = 0; k < 3; k++) {
             int bits = k < 2 ? 11 : 10, most = (1 << (bits - 1)) - 1;

@@ -144,7 +144,8 @@ static bool add_primitive(ref_scene *s, const masu_blob_primitive *p, const doub
             memcpy(s->texcoords + 2 * at, texcoords + 2 * (size_t)(p->first_vertex + i),
                    2 * sizeof(float));
         if (s->texcoords_1)
-            memcpy(s->texcoords_1 + 2 * at, second + 2 * (size_t)(p->first_vertex + i), 2 * sizeof(float));
+            memcpy(s->texcoords_1 + 2 * at, second + 2 * (size_t)(p->first_vertex + i),
+                   2 * sizeof(float));
         for (int k = 0; k < 4 && s->colors; k++) {
             float c = (float)(colors[p->first_vertex + i] >> 8 * k & 255u) / 255.0f;
             s->colors[4 * at + (uint64_t)k] = k < 3 ? c * c : c;
@@ -206,7 +207,8 @@ static bool read_triangles(ref_scene *s, const double *matrices, double time, bo
             s->texcoords = calloc(vertices + 1, 2 * sizeof *s->texcoords);
         if (s->blob.section[MASU_BLOB_TEXCOORDS_1])
             s->texcoords_1 = calloc(vertices + 1, 2 * sizeof *s->texcoords_1);
-        if (s->blob.section[MASU_BLOB_COLORS]) s->colors = calloc(vertices + 1, 4 * sizeof *s->colors);
+        if (s->blob.section[MASU_BLOB_COLORS])
+            s->colors = calloc(vertices + 1, 4 * sizeof *s->colors);
         good = s->positions && s->normals && s->triangles &&
                !s->texcoords_1 == !s->blob.section[MASU_BLOB_TEXCOORDS_1] &&
                !s->colors == !s->blob.section[MASU_BLOB_COLORS] &&

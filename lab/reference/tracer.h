@@ -53,7 +53,8 @@ void ref_local_lights(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b
 /* Adds `from`, with each lobe times color. */
 void ref_add_lobes(ref_lobes *to, const ref_lobes *from, ref_vec color);
 /* Light that reaches a surface from a light source at the distance `far` along l. */
-ref_vec ref_light_visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far, bool shadows);
+ref_vec ref_light_visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far,
+                          bool shadows);
 bool ref_is_unlit(const ref_surface *s);
 /* Transmittance of fog along a segment that starts at `from` in direction d. far: HUGE_VAL for the
  * sky. */

@@ -480,7 +480,8 @@ static bool run(bench *w) {
     return good;
 }
 
-bool masu_baseline_run(const masu_baseline_desc *desc, masu_baseline *out, char *error, size_t error_size) {
+bool masu_baseline_run(const masu_baseline_desc *desc, masu_baseline *out, char *error,
+                       size_t error_size) {
     static bench w;
     memset(&w, 0, sizeof w);
     memset(out, 0, sizeof *out);

@@ -99,7 +99,8 @@ typedef struct masu_baseline {
 } masu_baseline;
 
 /* On false `error` holds one line. */
-bool masu_baseline_run(const masu_baseline_desc *desc, masu_baseline *out, char *error, size_t error_size);
+bool masu_baseline_run(const masu_baseline_desc *desc, masu_baseline *out, char *error,
+                       size_t error_size);
 
 /* The baseline's rung for a scene, and the name of its march. */
 masu_rung masu_baseline_rung(const masu_scene *scene, const char **march);

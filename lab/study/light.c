@@ -69,7 +69,8 @@ static bool choose(study *w, uint32_t chosen, bool shadows,
         masu_punctual_light_state state = states[i];
         if (i != chosen) memset(state.color, 0, sizeof state.color);
         state.no_shadow = !shadows;
-        if (masu_punctual_light_set(w->s.m, masu_punctual_light_at(w->s.m, i), &state, NULL) != MASU_OK)
+        if (masu_punctual_light_set(w->s.m, masu_punctual_light_at(w->s.m, i), &state, NULL) !=
+            MASU_OK)
             return failed(w, "a light cannot be changed");
     }
     return true;

@@ -162,4 +162,6 @@ bool masu_bench_gpu_trace(masu_bench_gpu *g, uint32_t count, bool counted, doubl
     return good;
 }
 
-const masu_bench_hit *masu_bench_gpu_hits(const masu_bench_gpu *g) { return g->buffer[HITS].mapped; }
+const masu_bench_hit *masu_bench_gpu_hits(const masu_bench_gpu *g) {
+    return g->buffer[HITS].mapped;
+}

@@ -10,8 +10,9 @@
 #include <string.h>
 
 static const masu_study *const studies[] = {
-    &masu_study_march,   &masu_study_rays,  &masu_study_reflections, &masu_study_image,
-    &masu_study_upscale, &masu_study_temporal, &masu_study_baseline,  &masu_study_light,    &masu_study_rest,     &masu_study_bounce};
+    &masu_study_march,   &masu_study_rays,     &masu_study_reflections, &masu_study_image,
+    &masu_study_upscale, &masu_study_temporal, &masu_study_baseline,    &masu_study_light,
+    &masu_study_rest,    &masu_study_bounce};
 enum { STUDIES = sizeof studies / sizeof *studies };
 
 static const masu_study *study_of(const masu_cli_command *command) {

@@ -61,7 +61,8 @@ typedef struct masu_study {
     { .name = NULL }
 
 extern const masu_study masu_study_march, masu_study_rays, masu_study_reflections, masu_study_image,
-    masu_study_upscale, masu_study_temporal, masu_study_baseline, masu_study_light, masu_study_rest, masu_study_bounce;
+    masu_study_upscale, masu_study_temporal, masu_study_baseline, masu_study_light, masu_study_rest,
+    masu_study_bounce;
 
 /* The name of the scene's file, without its folder and everything after its first dot. */
 void masu_study_scene_name(const char *path, char *name, size_t size);

@@ -81,7 +81,8 @@ static const masu_column columns[] = {
     {"driver", "\"", NULL, NULL},
     {NULL, NULL, NULL, NULL}};
 
-static void add_equal(masu_table *t, const masu_baseline *w, const masu_baseline_entry *e, int metric) {
+static void add_equal(masu_table *t, const masu_baseline *w, const masu_baseline_entry *e,
+                      int metric) {
     uint32_t k = e->samples[metric];
     char samples[16] = "", ratio[24] = "";
     masu_table_number(t, k);
@@ -140,15 +141,18 @@ static void add_row(masu_table *t, const masu_baseline *w, uint32_t entry) {
 }
 
 static void print_head(const masu_baseline *w) {
-    fprintf(o->text, "%s at %ux%u, %.4g s, ground truth of %u positions and %u rays; %s\n", w->scene,
-            o->size.width, o->size.height, o->time, o->truth.positions, o->truth.rays, w->driver);
+    fprintf(o->text, "%s at %ux%u, %.4g s, ground truth of %u positions and %u rays; %s\n",
+            w->scene, o->size.width, o->size.height, o->time, o->truth.positions, o->truth.rays,
+            w->driver);
     fprintf(o->text,
-            "plain: march %s; %.1f %% of its time in passes that no baseline renderer needs, %.1f %% in "
+            "plain: march %s; %.1f %% of its time in passes that no baseline renderer needs, %.1f "
+            "%% in "
             "work that k samples need once\n",
             w->march, 100.0 * masu_baseline_spare(&w->entries[0]),
             100.0 * masu_baseline_once(&w->entries[0]));
-    fprintf(o->text, "a: plain time / own; b: the same with the samples needed for equal error; both in "
-                     "motion\n");
+    fprintf(o->text,
+            "a: plain time / own; b: the same with the samples needed for equal error; both in "
+            "motion\n");
 }
 
 static void print_points(const masu_baseline *w) {
@@ -332,9 +336,11 @@ const masu_study masu_study_baseline = {
     .run = run,
     .details =
         "Plain: the output's size, a separate march per pixel, nothing culled, no LODs, ambient\n"
-        "occlusion and one unfiltered specular ray at each pixel, no anti-aliasing, no history. The\n"
+        "occlusion and one unfiltered specular ray at each pixel, no anti-aliasing, no history. "
+        "The\n"
         "camera is in motion, or still (--step 0); the ground truth is drawn as by masu render\n"
-        "--truth. a is the median over rounds of plain time / own time. b is the same with k plain\n"
+        "--truth. a is the median over rounds of plain time / own time. b is the same with k "
+        "plain\n"
         "frames, where k is the least count whose mean has at most the setting's error; computing\n"
         "the mean is not timed, and shadow maps are drawn once.\n"
         "k is 1 if a single plain frame is at least as good: then b is a.\n"

@@ -137,7 +137,8 @@ static bool is_of_light(const ref_scene *s, const ref_triangle *triangle) {
 
 /* Materials whose emission lights pixels without a bounce. */
 static bool find_emitters(study *w) {
-    w->direct_materials = calloc((size_t)w->scene.blob.count[MASU_BLOB_MATERIALS] + 1, sizeof *w->direct_materials);
+    w->direct_materials =
+        calloc((size_t)w->scene.blob.count[MASU_BLOB_MATERIALS] + 1, sizeof *w->direct_materials);
     if (!w->direct_materials) return false;
     for (uint32_t i = 0; i < w->scene.emitter_count; i++) {
         const ref_triangle *t = &w->scene.triangles[w->scene.emitters[i].triangle];
@@ -150,23 +151,24 @@ static ref_tracer tracer_of(const study *w) {
     const double *window = given.window;
     ref_ggx_tables();
     return (ref_tracer){.world = &w->world,
-                      .sky = &w->sky,
-                      .physics = true,
-                      .full = true,
-                      .polygons_shadow = true,
-                      .field_shadows = true,
-                      .sky_samples = true,
-                      .light_samples = true,
-                      .bsdf_samples = true,
-                      .bounces = 16,
-                      .direct = w->direct_materials,
-                      .diffuse_hits = given.diffuse,
-                      .sun_direction = ref_of(w->scene.environment->sun_direction),
-                      .sun_color = given.night ? ref_splat(0) : ref_of(w->scene.environment->sun_color),
-                      .eye = w->camera.eye,
-                      .window = {ref_v(window[0], window[1], window[2]),
-                                 ref_v(window[3], window[4], window[5]), window[0] < window[3]},
-                      .environment = w->scene.environment};
+                        .sky = &w->sky,
+                        .physics = true,
+                        .full = true,
+                        .polygons_shadow = true,
+                        .field_shadows = true,
+                        .sky_samples = true,
+                        .light_samples = true,
+                        .bsdf_samples = true,
+                        .bounces = 16,
+                        .direct = w->direct_materials,
+                        .diffuse_hits = given.diffuse,
+                        .sun_direction = ref_of(w->scene.environment->sun_direction),
+                        .sun_color =
+                            given.night ? ref_splat(0) : ref_of(w->scene.environment->sun_color),
+                        .eye = w->camera.eye,
+                        .window = {ref_v(window[0], window[1], window[2]),
+                                   ref_v(window[3], window[4], window[5]), window[0] < window[3]},
+                        .environment = w->scene.environment};
 }
 
 static double ratio(double a, double b) { return b > 0 ? a / b : 0; }
@@ -201,9 +203,13 @@ static void find_points(study *w) {
             square += value * value;
         }
         double mean = (sum[0] + sum[1]) / n;
-        w->points[w->count++] = (point){.at = at, .expected = mean,
-                                        .halves = {sum[0] / ((given.paths + 1) / 2), sum[1] / (given.paths / 2)},
-                                        .variance = fmax(square / n - mean * mean, 0) / (n - 1), .soft = albedo.of[REF_SOFT], .all = ref_lobes_sum(&albedo)};
+        w->points[w->count++] =
+            (point){.at = at,
+                    .expected = mean,
+                    .halves = {sum[0] / ((given.paths + 1) / 2), sum[1] / (given.paths / 2)},
+                    .variance = fmax(square / n - mean * mean, 0) / (n - 1),
+                    .soft = albedo.of[REF_SOFT],
+                    .all = ref_lobes_sum(&albedo)};
     }
 }
 
@@ -218,7 +224,8 @@ static bool read_points(study *w, char *error, size_t size) {
         masu_cli_progress_text("paths of the reference");
         find_points(w);
         if (given.reference) file = fopen(given.reference, "wb");
-        if (given.reference && (!file || fwrite(w->points, sizeof *w->points, w->count, file) != w->count))
+        if (given.reference &&
+            (!file || fwrite(w->points, sizeof *w->points, w->count, file) != w->count))
             snprintf(error, size, "%s: cannot be written", given.reference);
     }
     if (file) fclose(file);
@@ -303,14 +310,19 @@ static ref_vec added(const float *a, const float *b, size_t pixel) {
  * bare: also divided by ambient occlusion, which is computed from the light that a uniform
  * environment adds to the pixel. */
 static double irradiance_at(const study *w, const point *p, bool bare) {
-    ref_vec light = added(w->image, w->direct, p->at), one = p->soft, uniform = added(w->uniform, w->direct, p->at);
-    if (bare) one = ref_mul(one, ref_v(ratio(uniform.x, p->all.x), ratio(uniform.y, p->all.y), ratio(uniform.z, p->all.z)));
-    return REF_PI * ref_luminance(ref_v(ratio(light.x, one.x), ratio(light.y, one.y), ratio(light.z, one.z)));
+    ref_vec light = added(w->image, w->direct, p->at), one = p->soft,
+            uniform = added(w->uniform, w->direct, p->at);
+    if (bare)
+        one = ref_mul(one, ref_v(ratio(uniform.x, p->all.x), ratio(uniform.y, p->all.y),
+                                 ratio(uniform.z, p->all.z)));
+    return REF_PI * ref_luminance(
+                        ref_v(ratio(light.x, one.x), ratio(light.y, one.y), ratio(light.z, one.z)));
 }
 
 static double mean_of(const study *w) {
     double sum = 0;
-    for (uint32_t i = 0; i < w->count; i++) sum += irradiance_at(w, &w->points[i], false) / w->count;
+    for (uint32_t i = 0; i < w->count; i++)
+        sum += irradiance_at(w, &w->points[i], false) / w->count;
     return sum;
 }
 
@@ -430,11 +442,12 @@ static bool read_camera(masu_cli *cli, void *to) {
 
 static bool read_window(masu_cli *cli, void *to) {
     double *w = ((options *)to)->window;
-    if (sscanf(cli->value, "%lf,%lf,%lf,%lf,%lf,%lf", &w[0], &w[1], &w[2], &w[3], &w[4], &w[5]) == 6 &&
+    if (sscanf(cli->value, "%lf,%lf,%lf,%lf,%lf,%lf", &w[0], &w[1], &w[2], &w[3], &w[4], &w[5]) ==
+            6 &&
         w[0] < w[3] && w[1] < w[4] && w[2] < w[5])
         return true;
-    masu_cli_usage_error("--window: expected two corners X,Y,Z,X,Y,Z, the lower one first, not \"%s\"",
-                         cli->value);
+    masu_cli_usage_error(
+        "--window: expected two corners X,Y,Z,X,Y,Z, the lower one first, not \"%s\"", cli->value);
     return false;
 }
 
@@ -444,15 +457,19 @@ static const masu_option rows[] = {
     MASU_TEXT(options, sdf, "sdf", "FILE", "source of the scene's signed distance field"),
     MASU_UINT(options, points, "points", 1, POINTS_MOST, "points of matt polygons in view"),
     MASU_UINT(options, paths, "paths", 2, 1000000, "paths of the reference from each"),
-    MASU_TEXT(options, reference, "reference", "FILE", "points and results of paths: read if it exists, else written"),
-    MASU_OWN("window", "X,Y,Z,X,Y,Z", read_window, "box through which the sky is visible: fewer paths needed"),
+    MASU_TEXT(options, reference, "reference", "FILE",
+              "points and results of paths: read if it exists, else written"),
+    MASU_OWN("window", "X,Y,Z,X,Y,Z", read_window,
+             "box through which the sky is visible: fewer paths needed"),
     MASU_UINT(options, probes, "probes", 1, 2048, "rung.bounce_probes (default: the library's)"),
     MASU_UINT(options, rays, "rays", 8, 64, "rung.bounce_rays (default: the library's)"),
     MASU_OWN("camera", "X,Y,Z,X,Y,Z", read_camera, "position and target (default: the scene's)"),
     MASU_FLAG(options, night, "night", "without sun and sky"),
-    MASU_FLAG(options, diffuse, "diffuse-hits", "paths reflect diffusely after the first surface, as probe rays do"),
+    MASU_FLAG(options, diffuse, "diffuse-hits",
+              "paths reflect diffusely after the first surface, as probe rays do"),
     MASU_TEXT(options, lamp, "lamp", "NAME", "light that is switched on after --frames without it"),
-    MASU_TEXT(options, door, "open", "MODEL", "door that opens after --frames, with the lamp on: the response to it"),
+    MASU_TEXT(options, door, "open", "MODEL",
+              "door that opens after --frames, with the lamp on: the response to it"),
     MASU_REAL(options, lamp_color, "lamp-color", "VALUE", 0, 1e9, "its colour, grey"),
     MASU_STUDY_FRAMES(10000, "frames until the bounce has converged"),
     MASU_STUDY_CSV,
@@ -471,7 +488,8 @@ const masu_study masu_study_bounce = {
     .details =
         "Irradiance of points, less the direct light of sun and local lights: that of a frame is "
         "the light that the\n"
-        "bounce adds to a pixel, over its diffuse albedo; also without ambient occlusion. Its mean in the reference and "
+        "bounce adds to a pixel, over its diffuse albedo; also without ambient occlusion. Its mean "
+        "in the reference and "
         "the noise of one\n"
         "point, its mean in the last frame, the RMSE relative to the reference's mean, frames "
         "until the mean stays\n"

@@ -302,9 +302,9 @@ static int print(const bench *b) {
     masu_table t;
     masu_table_open(&t, columns, "n/a");
     for (uint32_t i = 0; i < b->row_count; i++) add_row(&t, b, &b->rows[i]);
-    fprintf(o->text, "%s at %ux%u, %.3g s, ground truth of %u positions, %.1f pixels per degree; %s\n",
-            b->scene, o->size.width, o->size.height, o->time, o->truth.positions, given.ppd,
-            b->driver);
+    fprintf(
+        o->text, "%s at %ux%u, %.3g s, ground truth of %u positions, %.1f pixels per degree; %s\n",
+        b->scene, o->size.width, o->size.height, o->time, o->truth.positions, given.ppd, b->driver);
     masu_table_print(&t, o->text);
     return masu_table_close(&t, o->csv);
 }
@@ -366,8 +366,10 @@ const masu_study masu_study_image = {
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "The ground truth is drawn as by masu render --truth. RMSE, PSNR and SSIM are of the shown\n"
-               "8 bits. Chain ms: GPU time of the passes after the tone curve; frame ms: wall time from\n"
-               "masu_frame to the fence, with a full barrier around each pass; both the least of "
-               "the runs, in\n"
-               "which the chains of a renderer alternate.\n"};
+    .details =
+        "The ground truth is drawn as by masu render --truth. RMSE, PSNR and SSIM are of the "
+        "shown\n"
+        "8 bits. Chain ms: GPU time of the passes after the tone curve; frame ms: wall time from\n"
+        "masu_frame to the fence, with a full barrier around each pass; both the least of "
+        "the runs, in\n"
+        "which the chains of a renderer alternate.\n"};

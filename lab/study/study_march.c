@@ -141,35 +141,41 @@ static void print_scene(masu_table *t, const masu_bench *b) {
     fprintf(o->text, "%s, %" PRIu32 "x%" PRIu32 ", %s\n", b->scene, o->size.width, o->size.height,
            b->driver);
     if (b->compared) {
-        fprintf(o->text, "  truth: %" PRIu64 " rays, %" PRIu64 " undecided and skipped, %.1f evaluations a "
-               "ray, %.1f s\n",
-               b->truth_samples, b->truth_unsure, b->truth_evals, b->truth_seconds);
+        fprintf(o->text,
+                "  truth: %" PRIu64 " rays, %" PRIu64 " undecided and skipped, %.1f evaluations a "
+                "ray, %.1f s\n",
+                b->truth_samples, b->truth_unsure, b->truth_evals, b->truth_seconds);
     } else {
         fprintf(o->text, "  truth: none next to the scene; errors are not measured\n");
     }
     if (!o->runs) {
         fprintf(o->text, "  ms: not measured\n");
     } else if (b->by_timestamps) {
-        fprintf(o->text, "  ms: the SDF passes by timestamps, least of %" PRIu32 " runs\n", o->runs);
+        fprintf(o->text, "  ms: the SDF passes by timestamps, least of %" PRIu32 " runs\n",
+                o->runs);
     } else {
-        fprintf(o->text, "  ms: the frame's wall time less %.2f, that of a frame with one march step; least "
-               "of %" PRIu32 " runs\n      (timestamps do not fit the wall clock)\n",
-               b->rest_wall_ms, o->runs);
+        fprintf(o->text,
+                "  ms: the frame's wall time less %.2f, that of a frame with one march step; least "
+                "of %" PRIu32 " runs\n      (timestamps do not fit the wall clock)\n",
+                b->rest_wall_ms, o->runs);
     }
     masu_table_print(t, o->text);
     if (b->compared) {
         const masu_march_errors *e = &b->rows[MASU_BENCH_MASU].errors;
-        fprintf(o->text, "  masu, wrong pixels: even %.4f %%, odd %.4f %% (chance of such a split %.3g); "
-               "tile rim %.4f %%, inside %.4f %% (%.3g)\n",
-               100 * e->checker.rate[0], 100 * e->checker.rate[1], e->checker.p,
-               100 * e->border.rate[0], 100 * e->border.rate[1], e->border.p);
+        fprintf(o->text,
+                "  masu, wrong pixels: even %.4f %%, odd %.4f %% (chance of such a split %.3g); "
+                "tile rim %.4f %%, inside %.4f %% (%.3g)\n",
+                100 * e->checker.rate[0], 100 * e->checker.rate[1], e->checker.p,
+                100 * e->border.rate[0], 100 * e->border.rate[1], e->border.p);
     }
     double spread = 1.0;
     for (int v = 0; v < MASU_BENCH_VARIANTS; v++) spread = fmax(spread, b->rows[v].spread);
     if (spread > 1.25) {
-        fprintf(o->text, "  the machine was busy: half of the frames of a variant took %.2f times its least; "
-               "use more --runs\n",
-               spread);
+        fprintf(
+            o->text,
+            "  the machine was busy: half of the frames of a variant took %.2f times its least; "
+            "use more --runs\n",
+            spread);
     }
     fprintf(o->text, "\n");
     fflush(o->text);
@@ -203,9 +209,10 @@ static void add_to_summary(summary *s, const masu_bench *b) {
 
 static void print_summary(const summary *s) {
     if (s->evals_count) {
-        fprintf(o->text, "masu: %.1f %% of the plain march's evaluations (geometric mean of %" PRIu32
-               " scenes)\n",
-               100 * exp(s->log_evals / s->evals_count), s->evals_count);
+        fprintf(o->text,
+                "masu: %.1f %% of the plain march's evaluations (geometric mean of %" PRIu32
+                " scenes)\n",
+                100 * exp(s->log_evals / s->evals_count), s->evals_count);
     }
     if (s->plain_count) {
         fprintf(o->text, "masu: %.2fx faster than the plain march (geometric mean; least %.2fx)\n",
@@ -216,9 +223,10 @@ static void print_summary(const summary *s) {
                exp(s->log_seed / s->seed_count), s->least_seed);
     }
     if (s->compared) {
-        fprintf(o->text, "masu: worst of %" PRIu32 " scenes: hit/miss %.4f %%, depth off %.4f %%, FLIP "
-               "%.5f\n",
-               s->compared, s->worst_hitmiss, s->worst_depth, s->worst_flip);
+        fprintf(o->text,
+                "masu: worst of %" PRIu32 " scenes: hit/miss %.4f %%, depth off %.4f %%, FLIP "
+                "%.5f\n",
+                s->compared, s->worst_hitmiss, s->worst_depth, s->worst_flip);
     }
 }
 
@@ -255,7 +263,8 @@ static bool run_scenes(uint32_t only, masu_table *t) {
 
 static int run(void) {
     uint32_t only = 0;
-    if (o->only && !masu_read_names("--only", o->only, masu_bench_names, MASU_BENCH_VARIANTS, &only))
+    if (o->only &&
+        !masu_read_names("--only", o->only, masu_bench_names, MASU_BENCH_VARIANTS, &only))
         return MASU_CLI_USAGE;
     if (o->runs && o->runs < 9)
         return masu_cli_usage_error("--runs %u: at least 9, or 0 for no times", o->runs);
@@ -289,13 +298,20 @@ const masu_study masu_study_march = {
     .options = rows,
     .given = &given,
     .run = run,
-    .details =
-        "Bake the scenes with the lab's masu-bake --variants (make study does): a march that a scene lacks has\n"
-        "no numbers. The variants alternate, and each round starts with another variant; times are\n"
-        "the least of at least 9 runs. \"/plain\" and \"/seed\" are the speed-up over the marches plain\n"
-        "and seed. Errors are against rays marched in double precision: hit instead of miss or the\n"
-        "reverse, in % of pixels; distance error above 1 %, in % of hits; distance error in widths of the\n"
-        "pixel at that distance; degrees between normals; LDR-FLIP of the shaded surfaces, mean and 99th\n"
-        "percentile, and of the GPU's own image. \"check z\" compares the error rates of even and odd pixels of\n"
-        "a checkerboard, and \"tile z\" the rim of 16x16 tiles with their inside, in standard deviations: above 3\n"
-        "the difference is significant.\n"};
+    .details = "Bake the scenes with the lab's masu-bake --variants (make study does): a march "
+               "that a scene lacks has\n"
+               "no numbers. The variants alternate, and each round starts with another variant; "
+               "times are\n"
+               "the least of at least 9 runs. \"/plain\" and \"/seed\" are the speed-up over the "
+               "marches plain\n"
+               "and seed. Errors are against rays marched in double precision: hit instead of miss "
+               "or the\n"
+               "reverse, in % of pixels; distance error above 1 %, in % of hits; distance error in "
+               "widths of the\n"
+               "pixel at that distance; degrees between normals; LDR-FLIP of the shaded surfaces, "
+               "mean and 99th\n"
+               "percentile, and of the GPU's own image. \"check z\" compares the error rates of "
+               "even and odd pixels of\n"
+               "a checkerboard, and \"tile z\" the rim of 16x16 tiles with their inside, in "
+               "standard deviations: above 3\n"
+               "the difference is significant.\n"};

@@ -263,7 +263,8 @@ static const masu_option rows[] = {
     MASU_REAL(options, roughness, "roughness", "R", 0, 1,
               "of the surfaces that reflect specular rays"),
     MASU_UINT(options, threads, "threads", 1, 16, "threads of Embree"),
-    MASU_FLAG(options, flat, "flat", "give Embree all triangles in world space instead of instances"),
+    MASU_FLAG(options, flat, "flat",
+              "give Embree all triangles in world space instead of instances"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};

@@ -149,10 +149,11 @@ static bool find_truth(bench *b) {
 static bool save(bench *b, uint32_t way, uint32_t motion) {
     char path[4096], scene[256];
     masu_study_scene_name(o->scene, scene, sizeof scene);
-    if (!masu_headless_target_read(&b->s.host, &b->s.targets[0], b->error, sizeof b->error)) return false;
+    if (!masu_headless_target_read(&b->s.host, &b->s.targets[0], b->error, sizeof b->error))
+        return false;
     snprintf(path, sizeof path, "%s/%s.%s.%s.png", o->images, scene, motions[motion], names[way]);
-    if (!masu_image_save_png(path, b->s.targets[0].mapped, o->size.width, o->size.height, 0, b->error,
-                             sizeof b->error)) {
+    if (!masu_image_save_png(path, b->s.targets[0].mapped, o->size.width, o->size.height, 0,
+                             b->error, sizeof b->error)) {
         return false;
     }
     float *errors = calloc(b->pixels, sizeof *errors);
@@ -310,10 +311,12 @@ static const masu_option rows[] = {
     MASU_STUDY_CSV,
     MASU_STUDY_FRAMES(10000, "frames with still or moving camera"),
     MASU_UINT(options, rays, "rays", 1, 1000000, "unfiltered rays per pixel to compare with"),
-    MASU_UINT(options, study.truth.rays, "reference", 1, 1000000, "rays per pixel of the ground truth"),
+    MASU_UINT(options, study.truth.rays, "reference", 1, 1000000,
+              "rays per pixel of the ground truth"),
     MASU_TEXT(options, study.truth.path, "truth", "FILE",
               "ground truth, read if it exists, otherwise written: floats of width x height x 3"),
-    MASU_REAL(options, study.time, "time", "SECONDS", -1e9, 1e9, "time of the camera's path at the last frame"),
+    MASU_REAL(options, study.time, "time", "SECONDS", -1e9, 1e9,
+              "time of the camera's path at the last frame"),
     MASU_TEXT(options, object, "object", "NAME", "instance to move"),
     MASU_STUDY_ONLY,
     MASU_STUDY_IMAGES("the shown images, and their errors, as PNG"),
@@ -329,9 +332,12 @@ const masu_study masu_study_reflections = {
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details =
-        "One row for each set of filters and motion, after one for unfiltered rays. relmse: mean of\n"
-        "(x - t)^2 / (t^2 + 0.01) over pixels that trace; then over their pixels of roughness below 0.05,\n"
-        "0.15, 0.25, and above. camera: its path up to --time; object: 1 m/s; jump: 8 frames after the\n"
-        "object was moved by 1 m. flicker: of 64 still frames, from the 16th on, in 1/255. Scenes without\n"
-        "such an instance have no rows for object and jump.\n"};
+    .details = "One row for each set of filters and motion, after one for unfiltered rays. relmse: "
+               "mean of\n"
+               "(x - t)^2 / (t^2 + 0.01) over pixels that trace; then over their pixels of "
+               "roughness below 0.05,\n"
+               "0.15, 0.25, and above. camera: its path up to --time; object: 1 m/s; jump: 8 "
+               "frames after the\n"
+               "object was moved by 1 m. flicker: of 64 still frames, from the 16th on, in 1/255. "
+               "Scenes without\n"
+               "such an instance have no rows for object and jump.\n"};

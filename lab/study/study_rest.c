@@ -204,9 +204,10 @@ const masu_study masu_study_rest = {
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Glow: the light of pixels around which the reference has a mean radiance of --above "
-               "or more, and none of 1,\n"
-               "divided by the reference's light.\n"
-               "Deviation: standard deviation over the last frames of each pixel of the shown "
-               "image, of 255, without tone\n"
-               "curve: its mean, 99th percentile and maximum.\n"};
+    .details =
+        "Glow: the light of pixels around which the reference has a mean radiance of --above "
+        "or more, and none of 1,\n"
+        "divided by the reference's light.\n"
+        "Deviation: standard deviation over the last frames of each pixel of the shown "
+        "image, of 255, without tone\n"
+        "curve: its mean, 99th percentile and maximum.\n"};

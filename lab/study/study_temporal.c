@@ -54,15 +54,17 @@ static const masu_column columns[] = {
 /* The row of that scale without history; NULL: not requested. */
 static const masu_past_row *without(const masu_past *w, double scale) {
     for (uint32_t i = 0; i < w->row_count; i++) {
-        if (w->rows[i].way == MASU_PAST_NONE && !(fabs(w->rows[i].scale - scale) > 0.0)) return &w->rows[i];
+        if (w->rows[i].way == MASU_PAST_NONE && !(fabs(w->rows[i].scale - scale) > 0.0))
+            return &w->rows[i];
     }
     return NULL;
 }
 
-static void add_row(masu_table *t, const masu_past *w, const char *scene, const masu_past_row *row) {
+static void add_row(masu_table *t, const masu_past *w, const char *scene,
+                    const masu_past_row *row) {
     const masu_past_row *beside = without(w, row->scale);
-    const double asked[] = {o->size.width,     o->size.height, o->time,           o->truth.positions,
-                            o->truth.rays,     o->frames,      given.fast_frames, row->scale};
+    const double asked[] = {o->size.width, o->size.height, o->time,           o->truth.positions,
+                            o->truth.rays, o->frames,      given.fast_frames, row->scale};
     masu_table_text(t, scene);
     masu_table_numbers(t, asked, sizeof asked / sizeof *asked);
     masu_table_text(t, masu_past_ways[row->way]);
@@ -70,7 +72,8 @@ static void add_row(masu_table *t, const masu_past *w, const char *scene, const 
     masu_table_number(t, row->render_height);
     for (int m = 0; m < MASU_PAST_MOTIONS; m++) {
         masu_table_number(t, row->flip[m]);
-        masu_table_number(t, beside && beside->flip[m] > 0.0 ? row->flip[m] / beside->flip[m] : (double)NAN);
+        masu_table_number(t, beside && beside->flip[m] > 0.0 ? row->flip[m] / beside->flip[m]
+                                                             : (double)NAN);
     }
     masu_table_numbers(t, row->flicker, MASU_PAST_FAST);
     masu_table_number(t, given.starts);
@@ -103,11 +106,12 @@ static int run(void) {
     masu_study_scene_name(o->scene, scene, sizeof scene);
     masu_table_open(&t, columns, "");
     for (uint32_t i = 0; i < w.row_count; i++) add_row(&t, &w, scene, &w.rows[i]);
-    fprintf(o->text, "%s at %ux%u, %.4g s, ground truth of %u positions and %u rays; %s\n", scene, o->size.width,
-            o->size.height, o->time, o->truth.positions, o->truth.rays, w.driver);
+    fprintf(o->text, "%s at %ux%u, %.4g s, ground truth of %u positions and %u rays; %s\n", scene,
+            o->size.width, o->size.height, o->time, o->truth.positions, o->truth.rays, w.driver);
     masu_table_print(&t, o->text);
     int code = masu_table_close(&t, o->csv);
-    return w.messages ? masu_cli_error("the validation layer has reported %u messages", w.messages) : code;
+    return w.messages ? masu_cli_error("the validation layer has reported %u messages", w.messages)
+                      : code;
 }
 
 static bool read_scales(masu_cli *cli, void *options_) {
@@ -121,7 +125,8 @@ static const masu_option rows[] = {
     MASU_STUDY_TRUTH,
     MASU_UINT(options, study.frames, "frames", 2, 10000,
               "with still camera and in slow motion, 1/60 s apart, before an image is measured"),
-    MASU_UINT(options, fast_frames, "fast-frames", 1, 10000, "the same in fast motion, 1/8 s apart"),
+    MASU_UINT(options, fast_frames, "fast-frames", 1, 10000,
+              "the same in fast motion, 1/8 s apart"),
     MASU_UINT(options, starts, "starts", 1, 100,
               "figures are means over this many images, each 5 frames longer than the last"),
     MASU_OWN("scales", "S,...", read_scales, "of the render size (default 1,0.5)"),
@@ -133,17 +138,22 @@ static const masu_option rows[] = {
 
 const masu_study masu_study_temporal = {
     .name = "temporal",
-    .purpose = "error and flicker with and without temporal upscaling, of a still and a moving camera",
+    .purpose =
+        "error and flicker with and without temporal upscaling, of a still and a moving camera",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details =
-        "Ways: without, a rung that sets nothing but its scale; temporal, the same rung with temporal=on.\n"
-        "The table shows FLIP of the last frame against the ground truth of masu render --truth. The camera\n"
-        "follows the scene's path and ends at the time of the still frame. Flicker is the mean difference of\n"
-        "the last two frames, of 255; in slow motion less that of the two ground truths. Figures are means of\n"
-        "several images whose jitter sequences start at different positions, because a single image is off\n"
-        "by up to 4 %.\n"};
+    .details = "Ways: without, a rung that sets nothing but its scale; temporal, the same rung "
+               "with temporal=on.\n"
+               "The table shows FLIP of the last frame against the ground truth of masu render "
+               "--truth. The camera\n"
+               "follows the scene's path and ends at the time of the still frame. Flicker is the "
+               "mean difference of\n"
+               "the last two frames, of 255; in slow motion less that of the two ground truths. "
+               "Figures are means of\n"
+               "several images whose jitter sequences start at different positions, because a "
+               "single image is off\n"
+               "by up to 4 %.\n"};

@@ -221,8 +221,9 @@ static bool run_rung(bench *b, subject *u, double *wall, double *gpu) {
     }
     if (!masu_headless_run(&b->s.host, commands.buffer, b->error, sizeof b->error)) return false;
     *wall = (double)(masu_clock_ns(NULL) - from) * 1e-9;
-    *gpu =
-        masu_stats(u->m, commands.slot, &stats, NULL) || !stats.timed ? 0 : (double)stats.gpu_ns * 1e-9;
+    *gpu = masu_stats(u->m, commands.slot, &stats, NULL) || !stats.timed
+               ? 0
+               : (double)stats.gpu_ns * 1e-9;
     return true;
 }
 
@@ -343,8 +344,8 @@ static int print(bench *b) {
     for (uint32_t i = 0; i < CASES; i++) {
         if (on(b, i)) add_row(&t, b, i, &base);
     }
-    fprintf(o->text, "%s\n%ux%u to %ux%u, %u alternating runs\n", b->s.host.driver, given.from.width,
-            given.from.height, o->size.width, o->size.height, o->runs);
+    fprintf(o->text, "%s\n%ux%u to %ux%u, %u alternating runs\n", b->s.host.driver,
+            given.from.width, given.from.height, o->size.width, o->size.height, o->runs);
     masu_table_print(&t, o->text);
     return masu_table_close(&t, o->csv);
 }
@@ -371,7 +372,8 @@ static int run(void) {
     const char *names[CASES];
     for (uint32_t i = 0; i < CASES; i++) names[i] = cases[i].name;
     b.only = (1u << CASES) - 1;
-    if (o->only && !masu_read_names("--only", o->only, names, CASES, &b.only)) return MASU_CLI_USAGE;
+    if (o->only && !masu_read_names("--only", o->only, names, CASES, &b.only))
+        return MASU_CLI_USAGE;
     int code = measure(&b) ? print(&b) : masu_cli_error("%s", b.error);
     masu_headless_settle(&b.s.host);
     for (uint32_t i = 0; i < CASES; i++) {

@@ -42,10 +42,11 @@ static bool save(study *w, const char *name, const uint8_t *rgba) {
     char file[4096];
     last = last ? last + 1 : path;
     if (!w->d->image_dir) return true;
-    if (snprintf(file, sizeof file, "%s/%.*s.%s.png", w->d->image_dir, (int)strcspn(last, "."), last, name) >=
-        (int)sizeof file)
+    if (snprintf(file, sizeof file, "%s/%.*s.%s.png", w->d->image_dir, (int)strcspn(last, "."),
+                 last, name) >= (int)sizeof file)
         return failed(w, "the path is too long");
-    return masu_image_save_png(file, rgba, w->d->size.width, w->d->size.height, 0, w->error, w->error_size);
+    return masu_image_save_png(file, rgba, w->d->size.width, w->d->size.height, 0, w->error,
+                               w->error_size);
 }
 
 /* ---- The ground truth ------------------------------------------------------------------------ */
@@ -88,11 +89,12 @@ static bool draw_own(study *w, masu_past_motion motion) {
     for (uint32_t k = 0; k < frames; k++) {
         masu_commands commands;
         memcpy(w->shown_before, w->shown, bytes_of(w->d->size));
-        if (!masu_motion_frame(&w->s, 0, time_of(w, motion, k), steps[motion], k == 0, &commands, w->error,
-                               w->error_size))
+        if (!masu_motion_frame(&w->s, 0, time_of(w, motion, k), steps[motion], k == 0, &commands,
+                               w->error, w->error_size))
             return false;
         if (k + 2 < frames) continue;
-        if (!masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size)) return false;
+        if (!masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size))
+            return false;
         memcpy(w->shown, w->s.targets[0].mapped, bytes_of(w->d->size));
     }
     return true;
@@ -107,22 +109,28 @@ static bool compare(study *w, masu_past_row *row, masu_past_motion motion) {
     const uint32_t width = w->d->size.width, height = w->d->size.height;
     char name[96];
     masu_flip flip;
-    snprintf(name, sizeof name, "%g.%s.%s", row->scale, masu_past_ways[row->way], masu_past_motions[motion]);
+    snprintf(name, sizeof name, "%g.%s.%s", row->scale, masu_past_ways[row->way],
+             masu_past_motions[motion]);
     if (!masu_metric_flip(w->truth, w->shown, width, height, 0, NULL, &flip))
         return failed(w, "out of memory");
     const double share = 1.0 / starts_of(w);
     row->flip[motion] += share * flip.mean;
     if (motion < MASU_PAST_FAST) {
-        row->flicker[motion] += share * masu_metric_difference(w->shown, w->shown_before, width, height);
+        row->flicker[motion] +=
+            share * masu_metric_difference(w->shown, w->shown_before, width, height);
         if (motion == MASU_PAST_SLOW)
-            row->flicker[motion] -= share * masu_metric_difference(w->truth, w->truth_before, width, height);
+            row->flicker[motion] -=
+                share * masu_metric_difference(w->truth, w->truth_before, width, height);
     }
     return w->start || save(w, name, w->shown);
 }
 
 static void find_size(const study *w, masu_past_row *row) {
     static const masu_scene any; /* any scene: a rung needs one for its size */
-    const masu_desc d = {.scene = &any, .output = w->d->size, .rung_count = 1, .rungs = {{.scale = (float)row->scale}}};
+    const masu_desc d = {.scene = &any,
+                         .output = w->d->size,
+                         .rung_count = 1,
+                         .rungs = {{.scale = (float)row->scale}}};
     const VkExtent2D size = masu_render_size(&d, 0);
     row->render_width = size.width;
     row->render_height = size.height;
@@ -141,7 +149,8 @@ static bool measure(study *w, masu_past_row *row) {
     for (int m = 0; m < MASU_PAST_MOTIONS; m++) {
         const masu_past_motion motion = (masu_past_motion)m;
         const masu_session_desc d = session_of_way(w, row);
-        snprintf(text, sizeof text, "size %g, %s, %s", row->scale, masu_past_ways[row->way], masu_past_motions[m]);
+        snprintf(text, sizeof text, "size %g, %s, %s", row->scale, masu_past_ways[row->way],
+                 masu_past_motions[m]);
         if (w->d->progress) w->d->progress(text);
         if (!masu_session_open(&d, &w->s, w->error, w->error_size)) return false;
         snprintf(w->out->driver, sizeof w->out->driver, "%s", w->s.host.driver);

@@ -11,7 +11,12 @@
 #include "session.h"
 
 typedef enum masu_past_way { MASU_PAST_NONE, MASU_PAST_OWN, MASU_PAST_WAYS } masu_past_way;
-typedef enum masu_past_motion { MASU_PAST_REST, MASU_PAST_SLOW, MASU_PAST_FAST, MASU_PAST_MOTIONS } masu_past_motion;
+typedef enum masu_past_motion {
+    MASU_PAST_REST,
+    MASU_PAST_SLOW,
+    MASU_PAST_FAST,
+    MASU_PAST_MOTIONS
+} masu_past_motion;
 
 /* "without", "temporal"; "rest", "slow", "fast" */
 extern const char *const masu_past_ways[MASU_PAST_WAYS];

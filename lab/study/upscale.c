@@ -156,7 +156,8 @@ static bool record(masu_bench_chain *c, const masu_bench_stage *stages, uint32_t
                                           .render_height = i ? target->height : from.height,
                                           .output_width = target->width,
                                           .output_height = target->height}};
-        struct masu_push_rcas rcas = {stages[i].lobe, 1.0f / stages[i].lobe, target->width - 1, target->height - 1};
+        struct masu_push_rcas rcas = {stages[i].lobe, 1.0f / stages[i].lobe, target->width - 1,
+                                      target->height - 1};
         struct masu_push_easu easu = {
             (float)push.sizes.render_width * (1.0f / (float)target->width),
             (float)push.sizes.render_height * (1.0f / (float)target->height)};

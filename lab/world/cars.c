@@ -155,8 +155,8 @@ static bool put(FILE *out, FILE *road, const char *torcs, const char *name, int 
     place(out, file, label, angles, masu_bake_v3(1, 1, 1),
           masu_bake_mad(ground, up, c->clearance),
           ",\n     \"material\": {\"roughness\": 0.35, \"coat\": 1, \"coat_roughness\": 0.05}");
-    fprintf(road, "car %s  %.3f %.3f %.3f  %.6f %.6f %.6f  %.6f %.6f %.6f  %.3f\n", label, ground.x, ground.y,
-            ground.z, ahead.x, ahead.y, ahead.z, up.x, up.y, up.z, c->clearance);
+    fprintf(road, "car %s  %.3f %.3f %.3f  %.6f %.6f %.6f  %.6f %.6f %.6f  %.3f\n", label, ground.x,
+            ground.y, ground.z, ahead.x, ahead.y, ahead.z, up.x, up.y, up.z, c->clearance);
     masu_bake_box box;
     if (!measure(file, &box)) return false;
     brakes(out, index, &box, angles, masu_bake_mad(ground, up, c->clearance),
@@ -179,8 +179,8 @@ static bool put(FILE *out, FILE *road, const char *torcs, const char *name, int 
     return true;
 }
 
-bool masu_world_car(FILE *out, FILE *road, const char *torcs, int index, masu_bake_vec3 at, double heading,
-                    masu_world_height height, void *user) {
+bool masu_world_car(FILE *out, FILE *road, const char *torcs, int index, masu_bake_vec3 at,
+                    double heading, masu_world_height height, void *user) {
     static const struct {
         const char *name, *wheel; /* for a car that names none */
     } cars[MASU_WORLD_CARS] = {

@@ -224,8 +224,9 @@ static void find_normals(track *t, ground *g) {
         masu_bake_vec3 left = beside(t, i, LEAN_AT, 0), right = beside(t, i, -LEAN_AT, 0);
         left.y = height_below(g, left.x, left.z, left.y);
         right.y = height_below(g, right.x, right.z, right.y);
-        masu_bake_vec3 up = masu_bake_cross(masu_bake_sub(right, left),
-                                            masu_bake_sub(beside(t, after, 0, 0), beside(t, before, 0, 0)));
+        masu_bake_vec3 up =
+            masu_bake_cross(masu_bake_sub(right, left),
+                            masu_bake_sub(beside(t, after, 0, 0), beside(t, before, 0, 0)));
         if (!masu_bake_normalize(&up) || up.y < 0.5) up = masu_bake_v3(0, 1, 0);
         point *p = &t->points[i];
         p->up[0] = up.x, p->up[1] = up.y, p->up[2] = up.z;
@@ -233,7 +234,8 @@ static void find_normals(track *t, ground *g) {
             double off = fmax(p->wall[side] - 1, 0);
             masu_bake_vec3 at = beside(t, i, side ? -off : off, 0);
             double plane = at.y - (up.x * (at.x - p->x) + up.z * (at.z + p->y)) / up.y, y = plane;
-            p->rise[side] = height_at(g, at.x, at.z, plane, &y) && fabs(y - plane) < 5 ? y - plane : 0;
+            p->rise[side] =
+                height_at(g, at.x, at.z, plane, &y) && fabs(y - plane) < 5 ? y - plane : 0;
         }
     }
 }
@@ -244,9 +246,9 @@ static void write_road(const track *t, FILE *out) {
     for (int i = 0; i < t->count; i++) {
         const point *p = &t->points[i];
         masu_bake_vec3 at = beside(t, i, 0, 0);
-        fprintf(out, "%.3f %.3f %.3f  %.4f %.4f %.4f  %.2f %.2f  %.2f %.2f  %.3f %.3f\n", at.x, at.y, at.z,
-                p->up[0], p->up[1], p->up[2], t->width / 2, t->width / 2, p->wall[0], p->wall[1], p->rise[0],
-                p->rise[1]);
+        fprintf(out, "%.3f %.3f %.3f  %.4f %.4f %.4f  %.2f %.2f  %.2f %.2f  %.3f %.3f\n", at.x,
+                at.y, at.z, p->up[0], p->up[1], p->up[2], t->width / 2, t->width / 2, p->wall[0],
+                p->wall[1], p->rise[0], p->rise[1]);
     }
 }
 
@@ -254,7 +256,8 @@ static bool cars(const track *t, ground *g, const char *torcs, FILE *out, FILE *
     for (int i = 0; i < MASU_WORLD_CARS; i++) {
         int at = i < 6 ? 6 + 3 * i : 60 + 70 * (i - 6); /* a grid of six, the others on the track */
         masu_bake_vec3 p = beside(t, at, i & 1 ? 3.2 : -3.2, 0);
-        if (!masu_world_car(out, road, torcs, i, p, t->points[at].heading, height_below, g)) return false;
+        if (!masu_world_car(out, road, torcs, i, p, t->points[at].heading, height_below, g))
+            return false;
     }
     return true;
 }

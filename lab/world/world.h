@@ -29,8 +29,8 @@ typedef double (*masu_world_height)(void *user, double x, double z, double guess
  * road at `at` (whose y is a guess), pointing to `heading`, in radians about y. Reports its own
  * errors. */
 #define MASU_WORLD_CARS 10
-bool masu_world_car(FILE *out, FILE *road, const char *torcs, int index, masu_bake_vec3 at, double heading,
-                    masu_world_height height, void *user);
+bool masu_world_car(FILE *out, FILE *road, const char *torcs, int index, masu_bake_vec3 at,
+                    double heading, masu_world_height height, void *user);
 
 /* From an XML's text between two pointers: a number, or `otherwise`; a string, or false if there is
  * no matching one. */

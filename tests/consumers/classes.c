@@ -31,7 +31,8 @@ int main(int argc, char **argv) {
             fprintf(stderr, "%s: %s\n", argv[i], blob ? detail.text : "cannot be read");
             return 1;
         }
-        masu_desc desc = {MASU_DESC, .scene = &scene, .output = {640, 360}, .targets = {.count = 1, .storage = 1}, .rung_count = 4};
+        masu_desc desc = {MASU_DESC, .scene = &scene, .output = {640, 360},
+                          .targets = {.count = 1, .storage = 1}, .rung_count = 4};
         for (uint32_t r = 0; r < desc.rung_count; r++) {
             desc.rungs[r].scale = r ? 0.5f : 1.0f;
             desc.rungs[r].aa = ways[r];

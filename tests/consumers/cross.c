@@ -38,7 +38,9 @@ int main(int argc, char **argv) {
     static masu_frame_plan plan;
     static uint32_t words[1 << 16];
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        if (all[i].words > sizeof words / sizeof *words || !masu_unpack(&masu_pack_of_all, &all[i], words)) return 1;
+        if (all[i].words > sizeof words / sizeof *words ||
+            !masu_unpack(&masu_pack_of_all, &all[i], words))
+            return 1;
         for (uint32_t k = 0; k < all[i].words; k++) hash(words[k]);
     }
     printf("shaders %08lx%08lx\n", (unsigned long)(h >> 32), (unsigned long)(h & 0xFFFFFFFFu));
@@ -53,7 +55,8 @@ int main(int argc, char **argv) {
             printf("%s: %s\n", argv[i], blob ? detail.text : "cannot be read");
             continue;
         }
-        masu_desc desc = {MASU_DESC, .scene = &scene, .output = {1280, 720}, .targets = {&image, &view, 1, .storage = 1}};
+        masu_desc desc = {MASU_DESC, .scene = &scene, .output = {1280, 720},
+                          .targets = {&image, &view, 1, .storage = 1}};
         if (masu_compile(&desc, 256, 64, &plan, &detail)) {
             printf("%s: %s\n", argv[i], detail.text);
             continue;
@@ -66,7 +69,8 @@ int main(int argc, char **argv) {
         }
         for (uint32_t k = 0; k < MASU_BUFFER_COUNT; k++) hash(plan.buffers[k].bytes);
         for (uint32_t r = 0; r < plan.desc.rung_count; r++)
-            for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) hash((uint64_t)masu_has_pass(&plan.rungs[r].active, p));
+            for (uint32_t p = 0; p < MASU_PASS_COUNT; p++)
+                hash((uint64_t)masu_has_pass(&plan.rungs[r].active, p));
         printf("%s %s %08lx%08lx\n", argv[i], masu_scene_class_name(masu_scene_class_of(&scene)),
                (unsigned long)(h >> 32), (unsigned long)(h & 0xFFFFFFFFu));
     }

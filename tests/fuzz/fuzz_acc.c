@@ -9,7 +9,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     masu_bake_strip_acc((const char *)data, size, &once);
     EXPECT(once.bytes <= size + 1);
     masu_bake_strip_acc((const char *)once.data, once.bytes, &twice);
-    EXPECT(twice.bytes == once.bytes && (!once.bytes || !memcmp(once.data, twice.data, once.bytes)));
+    EXPECT(twice.bytes == once.bytes &&
+           (!once.bytes || !memcmp(once.data, twice.data, once.bytes)));
     masu_bake_release(&once);
     masu_bake_release(&twice);
     return 0;

@@ -12,7 +12,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (masu_bake_read(&options, &d)) {
         EXPECT(d.model_count || d.sdf.source);
         for (size_t i = 0; i < d.model_count; i++) {
-            for (int k = 0; k < 12; k++) EXPECT(d.models[i].placement.m[k] - d.models[i].placement.m[k] == 0);
+            for (int k = 0; k < 12; k++)
+                EXPECT(d.models[i].placement.m[k] - d.models[i].placement.m[k] == 0);
         }
     } else {
         EXPECT(strstr(in_file_said, "x.json"));

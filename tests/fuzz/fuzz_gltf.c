@@ -15,7 +15,8 @@ static void walk_mesh(const masu_gltf *g, const struct aiMesh *mesh) {
     }
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
         EXPECT(mesh->mFaces[i].mNumIndices == 3);
-        sum += (float)(mesh->mFaces[i].mIndices[2] & 1); /* its range is judged later, triangle by triangle */
+        sum += (float)(mesh->mFaces[i].mIndices[2] &
+                       1); /* its range is judged later, triangle by triangle */
     }
     for (unsigned b = 0; b < mesh->mNumBones; b++) {
         for (unsigned w = 0; w < mesh->mBones[b]->mNumWeights; w++)
@@ -25,7 +26,8 @@ static void walk_mesh(const masu_gltf *g, const struct aiMesh *mesh) {
 
 static void walk_node(const masu_gltf *g, const struct aiNode *node, int depth) {
     for (unsigned i = 0; i < node->mNumMeshes; i++) EXPECT(node->mMeshes[i] < g->scene.mNumMeshes);
-    for (unsigned i = 0; i < node->mNumChildren && depth < 1000; i++) walk_node(g, node->mChildren[i], depth + 1);
+    for (unsigned i = 0; i < node->mNumChildren && depth < 1000; i++)
+        walk_node(g, node->mChildren[i], depth + 1);
 }
 
 static void walk(const masu_gltf *g) {
@@ -43,7 +45,10 @@ static void walk(const masu_gltf *g) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     masu_bake_content content = {0};
     masu_bake_buffer warnings = {0}, error = {0};
-    masu_gltf g = {.wanted = MASU_BAKE_TEXTURES_FORCED, .piece = &content, .warnings = &warnings, .error = &error};
+    masu_gltf g = {.wanted = MASU_BAKE_TEXTURES_FORCED,
+                   .piece = &content,
+                   .warnings = &warnings,
+                   .error = &error};
     bool good = masu_gltf_read_bytes(&g, data, size);
     EXPECT(good ? error.bytes == 0 : error.bytes > 0);
     EXPECT(!error.bytes || !memchr(error.data, '\n', error.bytes));

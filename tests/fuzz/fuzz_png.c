@@ -4,7 +4,9 @@
 
 #include "image.h"
 
-static uint32_t number(const uint8_t *p) { return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3]; }
+static uint32_t number(const uint8_t *p) {
+    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
+}
 
 static void mend_checksums(uint8_t *bytes, size_t count) {
     for (size_t at = 8; count - at >= 12 && number(bytes + at) <= count - at - 12;) {
@@ -29,7 +31,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     memcpy(bytes, data, size);
     mend_checksums(bytes, size);
     /* Small ones alone: time is for what is in them. */
-    if (size > 24 && (number(bytes + 16) > 1024 || number(bytes + 20) > 1024)) memset(bytes + 16, 0, 6);
+    if (size > 24 && (number(bytes + 16) > 1024 || number(bytes + 20) > 1024))
+        memset(bytes + 16, 0, 6);
     mend_checksums(bytes, size);
     if (masu_image_decode_png("x.png", bytes, size, &image, error, sizeof error)) {
         EXPECT(image.width && image.height && image.rgba);
@@ -37,7 +40,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     } else {
         EXPECT(!strncmp(error, "x.png: ", 7) && !image.rgba);
     }
-    uint16_t *gray = masu_image_decode_gray("x.png", bytes, size, &width, &height, error, sizeof error);
+    uint16_t *gray =
+        masu_image_decode_gray("x.png", bytes, size, &width, &height, error, sizeof error);
     EXPECT(!gray || (width && height));
     free(gray);
     free(bytes);

@@ -10,7 +10,8 @@
 #include "bench/machine.h"
 #include "bench/report.h"
 
-static const char *const files[] = {"sweep.json", "results.csv", "steady.csv", "machine.json", "ladder.json"};
+static const char *const files[] = {"sweep.json", "results.csv", "steady.csv", "machine.json",
+                                    "ladder.json"};
 enum { FILES = sizeof files / sizeof *files };
 
 static char root[64], part[80], merged[80];
@@ -33,7 +34,8 @@ static void at_end(void) { remove_all(root); }
 static void begin(void) {
     if (*root) return;
     /* In memory, where there is such a folder: files are synced with their disk. */
-    snprintf(root, sizeof root, "%s/masu-fuzz-XXXXXX", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
+    snprintf(root, sizeof root, "%s/masu-fuzz-XXXXXX",
+             access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
     EXPECT(mkdtemp(root));
     snprintf(part, sizeof part, "%s/part", root);
     snprintf(merged, sizeof merged, "%s/merged", root);
@@ -60,7 +62,9 @@ static void write_parts(const uint8_t *data, size_t size) {
 }
 
 /* Of a refusal: one line. */
-static void check(bool good, const char *error) { EXPECT(good || (*error && !strchr(error, '\n'))); }
+static void check(bool good, const char *error) {
+    EXPECT(good || (*error && !strchr(error, '\n')));
+}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static masu_setting_list list;
@@ -73,7 +77,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     check(masu_report_rungs(part, &list, error, sizeof error), error);
     check(masu_report_unsteady(part, &list, error, sizeof error), error);
     check(masu_against_compare(part, part, &against, error, sizeof error), error);
-    for (uint32_t i = 0; i < 4 && masu_machine_read(part, i, &machine); i++) EXPECT(strlen(machine.cpu) < sizeof machine.cpu);
+    for (uint32_t i = 0; i < 4 && masu_machine_read(part, i, &machine); i++)
+        EXPECT(strlen(machine.cpu) < sizeof machine.cpu);
     check(masu_sweep_merge(merged, parts, 1, error, sizeof error), error);
     remove_all(merged);
     DIR *d = opendir(root);

@@ -17,7 +17,8 @@ static inline void in_file_remove(void) {
 }
 
 /* FOLDER/NAME with these bytes; out: room for 64. From then on nothing has been said. */
-static inline const char *in_file(const char *name, const uint8_t *data, size_t size, char out[64]) {
+static inline const char *in_file(const char *name, const uint8_t *data, size_t size,
+                                  char out[64]) {
     if (!in_file_terminal) {
         in_file_terminal = stderr;
         EXPECT(mkdtemp(in_file_folder));

@@ -32,7 +32,8 @@ static eye make_eye(const masu_camera *c, uint32_t width, uint32_t height) {
 /* Ray through pixel coordinates (x, y), with the centre of the first pixel at (0.5, 0.5); length 1
  * in view depth. */
 static vec ray_through(const eye *e, double x, double y) {
-    return vec_add(e->forward, vec_add(vec_scale(e->right, 2 * x / W - 1), vec_scale(e->up, 1 - 2 * y / H)));
+    return vec_add(e->forward,
+                   vec_add(vec_scale(e->right, 2 * x / W - 1), vec_scale(e->up, 1 - 2 * y / H)));
 }
 
 /* View depth of the first hit with a sphere around the origin, or -1. */
@@ -74,7 +75,8 @@ static void take_picture(masu_session *s, const masu_frame_desc *frame, picture 
     masu_commands commands;
     masu_readback_image image;
     draw(s, frame, &commands, NULL);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image, NULL),
+                     MASU_OK);
     assert_int_equal(image.width, W);
     assert_int_equal(image.height, H);
     assert_int_equal(image.format, VK_FORMAT_R32_SFLOAT);
@@ -282,8 +284,9 @@ static void at_the_same_depth_the_polygon_wins(void **state) {
     for (int i = 0; i < 3; i++) {
         /* On the near plane; behind it; again on it. */
         const float rows[12] = {1, 0, 0, 0, 0, 1, 0, i == 1 ? -0.25f : 0, 0, 0, 1, 0};
-        assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "plate"), rows, NULL),
-                         MASU_OK);
+        assert_int_equal(
+            masu_instance_set_transform(s.m, masu_instance_find(s.m, "plate"), rows, NULL),
+            MASU_OK);
         take_picture(&s, &frame, &p);
         for (uint32_t k = 0; k < W * H; k++) {
             /* view depth: near / 1; GPU divisions are slightly inexact */
@@ -309,7 +312,8 @@ static void a_million_metres_from_the_origin_polygons_look_the_same(void **state
     masu_frame_desc frame = {.camera = &c};
     take_picture(&s, &frame, &here);
     float rows[12] = {1, 0, 0, 1048576, 0, 1, 0, -2097152, 0, 0, 1, 524288};
-    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, 0), rows, NULL), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, 0), rows, NULL),
+                     MASU_OK);
     c.position[0] += 1048576, c.position[1] -= 2097152, c.position[2] += 524288;
     take_picture(&s, &frame, &there);
     double worst = 0;

@@ -27,7 +27,8 @@ static uint32_t slot; /* of the last rendered frame */
 static void bake_ao(const char *name, double radius, const char *members) {
     char json[2048];
     if (radius > 0) {
-        snprintf(json, sizeof json, "{\"ambient_occlusion\": {\"radius\": %.9g}, %s}", radius, members);
+        snprintf(json, sizeof json, "{\"ambient_occlusion\": {\"radius\": %.9g}, %s}", radius,
+                 members);
     } else {
         snprintf(json, sizeof json, "{%s}", members);
     }
@@ -72,7 +73,8 @@ static const char floor_alone[] =
 static const char plate[] =
     "\"models\": [{\"mesh\": {\"box\": {\"size\": [8, 8, 0.1]}}, \"translate\": [0, 0, -0.05]},"
     "{\"mesh\": {\"box\": {\"size\": [1, 1, 0.02]}}, \"translate\": [0, 0, 0.29]}],"
-    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 4], \"target\": [0, 0, 0]}]}";
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 4], \"target\": "
+    "[0, 0, 0]}]}";
 
 /* ---- Reference ------------------------------------------------------------------------------- */
 
@@ -147,7 +149,8 @@ typedef struct errors {
     uint32_t count;
 } errors;
 
-static errors compare(const char *name, double (*at)(const double *, const double *), double radius) {
+static errors compare(const char *name, double (*at)(const double *, const double *),
+                      double radius) {
     errors e = {0};
     masu_camera camera;
     masu_ao_world world;
@@ -181,8 +184,9 @@ static errors compare(const char *name, double (*at)(const double *, const doubl
     e.rays = sqrt(e.rays / e.count);
     e.none = sqrt(e.none / e.count);
     e.mean /= e.count;
-    print_message("%s: rmse %.4f, mean %+.4f, worst %.3f of %u; without %.4f; rays against formula %.4f\n",
-                  name, e.rmse, e.mean, e.worst, e.count, e.none, e.rays);
+    print_message(
+        "%s: rmse %.4f, mean %+.4f, worst %.3f of %u; without %.4f; rays against formula %.4f\n",
+        name, e.rmse, e.mean, e.worst, e.count, e.none, e.rays);
     return e;
 }
 
@@ -327,12 +331,14 @@ static void a_camera_that_creeps_changes_it_little(void **state) {
             masu_unpack_normal(normals[k], n);
             double now = ambient_share(seen, k), d = fabs(now - before[k]);
             /* The ball's outline moves over the pixels: jumps are allowed there. */
-            if (i && n[1] > 0.999f) squares += d * d, most = worst_of(most, d), jumps += d > 0.1, count++;
+            if (i && n[1] > 0.999f)
+                squares += d * d, most = worst_of(most, d), jumps += d > 0.1, count++;
             before[k] = now;
         }
     }
     close_session(&s);
-    print_message("an eighth of a pixel changes the floor's by %.5f (rms), %.3f (most), %u of %u by over 0.1\n",
+    print_message("an eighth of a pixel changes the floor's by %.5f (rms), %.3f (most), %u of %u "
+                  "by over 0.1\n",
                   sqrt(squares / count), most, jumps, count);
     assert_true(count > 10000);
     assert_true(sqrt(squares / count) < 0.01);
@@ -359,7 +365,8 @@ static void nothing_outside_of_the_rectangle_is_looked_at(void **state) {
             masu_frame_desc frame = {.rung = r};
             masu_commands commands;
             draw(&s, &frame, &commands, NULL);
-            assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_OCCLUSION, &out, NULL), MASU_OK);
+            assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_OCCLUSION, &out, NULL),
+                             MASU_OK);
             assert_int_equal(out.width, r ? 62 : W);
             for (uint32_t y = 0; y < out.height; y++) {
                 const uint32_t *line =
@@ -454,15 +461,19 @@ static void extremes_give_finite_pixels(void **state) {
     static const VkExtent2D sizes[] = {{1, 1}, {2, 1}, {1, 3}, {5, 7}, {64, 48}};
     static const double radii[] = {1e-3, 1, 1e6};
     static const char *const cameras[] = {
-        "{\"fov_y\": 50, \"near\": 0.05, \"keys\": [{\"position\": [3, 2, 4], \"target\": [0, 0.4, 0]}]}",
-        "{\"fov_y\": 170, \"near\": 1e-6, \"keys\": [{\"position\": [0.01, 0.001, 0.5], \"target\": [0, 0, 0]}]}",
-        "{\"fov_y\": 0.1, \"near\": 1e6, \"keys\": [{\"position\": [3e6, 2e6, 4e6], \"target\": [0, 0.4, 0]}]}"};
+        "{\"fov_y\": 50, \"near\": 0.05, \"keys\": [{\"position\": [3, 2, 4], \"target\": [0, 0.4, "
+        "0]}]}",
+        "{\"fov_y\": 170, \"near\": 1e-6, \"keys\": [{\"position\": [0.01, 0.001, 0.5], "
+        "\"target\": [0, 0, 0]}]}",
+        "{\"fov_y\": 0.1, \"near\": 1e6, \"keys\": [{\"position\": [3e6, 2e6, 4e6], \"target\": "
+        "[0, 0.4, 0]}]}"};
     masu_rung rung = {.scale = 1, .ao_slices = 8, .ao_steps = 16};
     for (int i = 0; i < 9; i++) {
         char text[1024];
         double scale = i % 3 == 2 ? 1e6 : 1;
         snprintf(text, sizeof text,
-                 "\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 60, \"size_z\": 60}}, \"scale\": %g}, "
+                 "\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 60, \"size_z\": 60}}, "
+                 "\"scale\": %g}, "
                  "{\"mesh\": {\"sphere\": {}}, \"scale\": %g}], \"camera\": %s",
                  scale, scale, cameras[i % 3]);
         bake_ao("extreme", radii[i / 3], text);

@@ -95,7 +95,8 @@ static void matte_surfaces_have_the_irradiance_of_closed_forms(void **unused) {
     begin();
     for (int i = 0; i < 8; i++) { /* spheres over a facing plane, down to contact, and far away */
         double d = i < 7 ? 1 + 0.25 * i : 1000;
-        add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_SPHERE, .radius = 1, .position = {0, 0, d}}));
+        add_matte(add_light((masu_punctual_light_state){
+            .shape = MASU_SHAPE_SPHERE, .radius = 1, .position = {0, 0, d}}));
         expected[case_count - 1] = 1 / (d * d);
         tolerance[case_count - 1] = 1e-3 / (d * d);
     }
@@ -105,24 +106,33 @@ static void matte_surfaces_have_the_irradiance_of_closed_forms(void **unused) {
         double root = flat * sqrt(fmax(1 - y * y, 0)), d = 1 / s;
         expected[case_count] = ((c * acos(y) - x * root) * s * s + atan(root / x)) / PI;
         tolerance[case_count] = fabs(c) < 1e-9 ? 0.01 : 0.017;
-        add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_SPHERE, .radius = 1, .position = {d * flat, 0, d * c}}));
+        add_matte(add_light((masu_punctual_light_state){
+            .shape = MASU_SHAPE_SPHERE, .radius = 1, .position = {d * flat, 0, d * c}}));
     }
     for (int i = 0; i < 6; i++) { /* a facing rectangle on its axis */
         double h = (double[]){0.1, 0.5, 1, 3, 10, 100}[i], x = 1.5 / h, y = 0.4 / h;
         double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
         expected[case_count] = 2 / PI * (x / a * atan(y / a) + y / b * atan(x / b));
         tolerance[case_count] = 2e-3 * expected[case_count];
-        add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE, .position = {0, 0, h},
-            .direction = {1.5f, 0, 0}, .half_axis = {0, -0.4f, 0}}));
+        add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE,
+                                                        .position = {0, 0, h},
+                                                        .direction = {1.5f, 0, 0},
+                                                        .half_axis = {0, -0.4f, 0}}));
     }
     for (int i = 0; i < 3; i++) { /* a capsule end-on is a disc; a long one, from the side, a
                                      cylinder */
         double d = (double[]){3, 4, 20}[i];
         expected[case_count] = i ? 0 : 1 / 9.0;
-        if (i) expected[case_count] = 0.1 / d; /* pi r L / d over an infinite one, halves at right angles: 2 r / d * pi / 2 / pi */
+        if (i)
+            expected[case_count] =
+                0.1 /
+                d; /* pi r L / d over an infinite one, halves at right angles: 2 r / d * pi / 2 / pi */
         tolerance[case_count] = (i ? 0.06 : 0.12) * expected[case_count];
-        add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_CAPSULE, .radius = i ? 0.1f : 1,
-            .position = {0, 0, d}, .direction = {i ? 1e4f : 1e-5f, 0, i ? 0 : 1e-3f}}));
+        add_matte(add_light(
+            (masu_punctual_light_state){.shape = MASU_SHAPE_CAPSULE,
+                                        .radius = i ? 0.1f : 1,
+                                        .position = {0, 0, d},
+                                        .direction = {i ? 1e4f : 1e-5f, 0, i ? 0 : 1e-3f}}));
     }
     run();
     for (uint32_t i = 0; i < case_count; i++) {
@@ -136,8 +146,11 @@ static void a_rectangle_is_one_sided_unless_told(void **unused) {
     (void)unused;
     begin();
     for (int i = 0; i < 4; i++) {
-        add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE, .position = {0, 0, 2},
-            .direction = {1, 0, 0}, .half_axis = {0, i & 1 ? 1.0f : -1.0f, 0}, .two_sided = i >> 1}));
+        add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE,
+                                                        .position = {0, 0, 2},
+                                                        .direction = {1, 0, 0},
+                                                        .half_axis = {0, i & 1 ? 1.0f : -1.0f, 0},
+                                                        .two_sided = i >> 1}));
     }
     run();
     assert_true(results[0][0] > 0.2f && results[1][0] == 0 && results[1][2] == 0);
@@ -147,10 +160,15 @@ static void a_rectangle_is_one_sided_unless_told(void **unused) {
 static void mirrors_show_the_radiance_and_surroundings_the_albedo(void **unused) {
     (void)unused;
     begin();
-    uint32_t screen = add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE, .position = {2, 0, 2},
-        .direction = {0, 1, 0}, .half_axis = {1, 0, -1}, .two_sided = 1});
-    uint32_t around = add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE, .position = {0, 0, 1},
-        .direction = {1000, 0, 0}, .half_axis = {0, -1000, 0}});
+    uint32_t screen = add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE,
+                                                            .position = {2, 0, 2},
+                                                            .direction = {0, 1, 0},
+                                                            .half_axis = {1, 0, -1},
+                                                            .two_sided = 1});
+    uint32_t around = add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE,
+                                                            .position = {0, 0, 1},
+                                                            .direction = {1000, 0, 0},
+                                                            .half_axis = {0, -1000, 0}});
     for (int i = 0; i < 3; i++) add_case(screen, 0.045 + 0.01 * i, PI / 4 + 0.02 * i, 0);
     uint32_t mirrors = case_count;
     for (int i = 0; i < 40; i++) {
@@ -166,7 +184,8 @@ static void mirrors_show_the_radiance_and_surroundings_the_albedo(void **unused)
         double is = (double)results[i][0] + (double)results[i][1];
         /* At grazing views the interreflection has an error: one cosine represents all of the
          * light. */
-        if (fabs(is - 1) > (cases[i].view[2] > 0.3f ? 0.025 : 0.03)) fail_msg("roughness %g: %g", (double)cases[i].roughness, is);
+        if (fabs(is - 1) > (cases[i].view[2] > 0.3f ? 0.025 : 0.03))
+            fail_msg("roughness %g: %g", (double)cases[i].roughness, is);
     }
 }
 
@@ -179,7 +198,8 @@ static int meets_sphere(const double d[3], const double center[3], double s2) {
 }
 
 /* Distance along d to the plane's part within the half axes; 0: no hit. */
-static double meets_rectangle(const double d[3], const double c[3], const double u[3], const double v[3]) {
+static double meets_rectangle(const double d[3], const double c[3], const double u[3],
+                              const double v[3]) {
     double n[3], at[3];
     cross3(u, v, n);
     double t = dot3(c, n) / dot3(d, n);
@@ -192,7 +212,8 @@ static double meets_capsule(const double d[3], const double c[3], const double u
     /* The smallest distance of the ray to the axis, from the closest points of both lines. */
     double length = sqrt(dot3(u, u)), e[3], best = 1e30;
     for (int k = 0; k < 3; k++) e[k] = u[k] / length;
-    double de = dot3(d, e), ce = dot3(c, e), cd = dot3(c, d), x = de * de < 1 ? (de * cd - ce) / (1 - de * de) : 0;
+    double de = dot3(d, e), ce = dot3(c, e), cd = dot3(c, d),
+           x = de * de < 1 ? (de * cd - ce) / (1 - de * de) : 0;
     x = fmin(fmax(x, -length), length);
     double p[3];
     for (int k = 0; k < 3; k++) p[k] = c[k] + x * e[k];
@@ -215,14 +236,16 @@ static void lobe_direction(double alpha, const double v[3], double a, double b, 
     double w[3] = {alpha * v[0], alpha * v[1], v[2]};
     unit3(w);
     double turn = 2 * PI * a, z = (1 - b) * (1 + w[2]) - w[2], flat = sqrt(fmax(1 - z * z, 0));
-    double h[3] = {alpha * (flat * cos(turn) + w[0]), alpha * (flat * sin(turn) + w[1]), fmax(z + w[2], 1e-9)};
+    double h[3] = {alpha * (flat * cos(turn) + w[0]), alpha * (flat * sin(turn) + w[1]),
+                   fmax(z + w[2], 1e-9)};
     unit3(h);
     double along = 2 * dot3(v, h);
     for (int k = 0; k < 3; k++) l[k] = along * h[k] - v[k];
 }
 
 /* A point on the light's surface in the direction l, and the density per solid angle; 0: none. */
-static double light_sample(const masu_punctual_light_state *s, const double c[3], double a, double b, double l[3]) {
+static double light_sample(const masu_punctual_light_state *s, const double c[3], double a,
+                           double b, double l[3]) {
     if (s->shape == MASU_SHAPE_RECTANGLE) {
         double u[3], v[3], n[3];
         for (int k = 0; k < 3; k++) {
@@ -238,7 +261,9 @@ static double light_sample(const masu_punctual_light_state *s, const double c[3]
     /* Within the cone around the sphere, or around a capsule's bounding sphere: misses contribute
      * 0. */
     double length = 0;
-    for (int k = 0; k < 3; k++) length += s->shape == MASU_SHAPE_CAPSULE ? (double)s->direction[k] * (double)s->direction[k] : 0;
+    for (int k = 0; k < 3; k++)
+        length +=
+            s->shape == MASU_SHAPE_CAPSULE ? (double)s->direction[k] * (double)s->direction[k] : 0;
     r += sqrt(length);
     far = sqrt(dot3(c, c));
     low = far > r ? 1 - sqrt(1 - r * r / (far * far)) : 1.999;
@@ -266,7 +291,8 @@ static double integral(const test_case *t) {
     brdf_surface surface = {{1, 1, 1}, (double)t->roughness, 1, 0, 0, 0};
     double v[3], c[3], sum = 0, alpha = fmax(surface.roughness, MASU_TABLE_SMOOTHEST);
     alpha *= alpha;
-    for (int k = 0; k < 3; k++) v[k] = (double)t->view[k], c[k] = s->position[k] - (double)t->point[k];
+    for (int k = 0; k < 3; k++)
+        v[k] = (double)t->view[k], c[k] = s->position[k] - (double)t->point[k];
     for (int i = 0; i < 2 * SAMPLES; i++) {
         /* Sequence R2, from another start for each case. */
         double n = i / 2 + 1000 * (double)(t - cases), l[3], f[3], density, other, unused[3];
@@ -282,7 +308,8 @@ static double integral(const test_case *t) {
         if (!(i & 1)) { /* the density of the light's samples in this direction */
             if (s->shape == MASU_SHAPE_RECTANGLE) {
                 double u[3], w[3], n[3];
-                for (int k = 0; k < 3; k++) u[k] = (double)s->direction[k], w[k] = (double)s->half_axis[k];
+                for (int k = 0; k < 3; k++)
+                    u[k] = (double)s->direction[k], w[k] = (double)s->half_axis[k];
                 double far = meets_rectangle(l, c, u, w);
                 cross3(u, w, n);
                 density = far * far / (4 * fabs(dot3(l, n)));
@@ -306,7 +333,8 @@ static double sphere_energy(double roughness, double sine, double elevation, dou
     static double weights[LIGHTS_MOST];
     enum { RINGS = 64, TURNS = 12 };
     double alpha = roughness * roughness, start = 1e-4 + 0.5 * (alpha * alpha + sine * sine);
-    double m[3] = {cos(elevation), 0, sin(elevation)}, side[3] = {-sin(elevation), 0, cos(elevation)};
+    double m[3] = {cos(elevation), 0, sin(elevation)},
+           side[3] = {-sin(elevation), 0, cos(elevation)};
     double span = log(1 + 2 / start), is = 0;
     begin();
     uint32_t n = 0;
@@ -335,10 +363,13 @@ static void spheres_keep_their_energy(void **unused) {
     double worst = 0;
     for (int e = 0; e < 3; e++) {
         for (int r = 0; r < ROUGHNESSES; r++) {
-            print_message("  view %2g, roughness %.3f: energy of radius / distance", elevations[e], roughnesses[r]);
+            print_message("  view %2g, roughness %.3f: energy of radius / distance", elevations[e],
+                          roughnesses[r]);
             for (int k = 0; k < 5; k++)
-                print_message(" %g: %.2f%s", sines[k], sphere_energy(roughnesses[r], sines[k], elevations[e] * PI / 180, &worst),
-                              k < 4 ? "," : "\n");
+                print_message(
+                    " %g: %.2f%s", sines[k],
+                    sphere_energy(roughnesses[r], sines[k], elevations[e] * PI / 180, &worst),
+                    k < 4 ? "," : "\n");
         }
     }
     assert_true(worst < 0.15);
@@ -353,16 +384,42 @@ static void rectangles_and_capsules_keep_their_energy(void **unused) {
         masu_punctual_light_state light;
         double energy, error; /* allowed */
     } shapes[] = {
-        {"rectangle 2 x 0.6, level", {.shape = MASU_SHAPE_RECTANGLE, .position = {0, 0, 1.5}, .direction = {1, 0, 0},
-                              .half_axis = {0, -0.3f, 0}}, 0.05, 0.15},
-        {"rectangle 2 x 0.6, upright", {.shape = MASU_SHAPE_RECTANGLE, .position = {0, 0, 1.2}, .direction = {0, 1, 0},
-                                .half_axis = {0, 0, 0.3f}, .two_sided = 1}, 0.06, 0.15},
-        {"strip 3 x 0.1", {.shape = MASU_SHAPE_RECTANGLE, .position = {0, 0, 0.5}, .direction = {1.5f, 0, 0},
-                   .half_axis = {0, -0.05f, 0}}, 0.05, 0.08},
-        {"capsule 2 x 0.1, level", {.shape = MASU_SHAPE_CAPSULE, .radius = 0.1f, .position = {0, 0, 1}, .direction = {0, 1, 0}},
-         0.06, 0.2},
-        {"capsule 2 x 0.1, upright", {.shape = MASU_SHAPE_CAPSULE, .radius = 0.1f, .position = {0, 0, 1.3}, .direction = {0, 0, 1}},
-         0.1, 0.3},
+        {"rectangle 2 x 0.6, level",
+         {.shape = MASU_SHAPE_RECTANGLE,
+          .position = {0, 0, 1.5},
+          .direction = {1, 0, 0},
+          .half_axis = {0, -0.3f, 0}},
+         0.05,
+         0.15},
+        {"rectangle 2 x 0.6, upright",
+         {.shape = MASU_SHAPE_RECTANGLE,
+          .position = {0, 0, 1.2},
+          .direction = {0, 1, 0},
+          .half_axis = {0, 0, 0.3f},
+          .two_sided = 1},
+         0.06,
+         0.15},
+        {"strip 3 x 0.1",
+         {.shape = MASU_SHAPE_RECTANGLE,
+          .position = {0, 0, 0.5},
+          .direction = {1.5f, 0, 0},
+          .half_axis = {0, -0.05f, 0}},
+         0.05,
+         0.08},
+        {"capsule 2 x 0.1, level",
+         {.shape = MASU_SHAPE_CAPSULE,
+          .radius = 0.1f,
+          .position = {0, 0, 1},
+          .direction = {0, 1, 0}},
+         0.06,
+         0.2},
+        {"capsule 2 x 0.1, upright",
+         {.shape = MASU_SHAPE_CAPSULE,
+          .radius = 0.1f,
+          .position = {0, 0, 1.3},
+          .direction = {0, 0, 1}},
+         0.1,
+         0.3},
     };
     int bad = 0;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
@@ -382,11 +439,13 @@ static void rectangles_and_capsules_keep_their_energy(void **unused) {
                 }
                 run();
                 for (uint32_t k = 0; k < case_count; k++) {
-                    double a = (double)results[k][1], b = integral(&cases[k]), w = pow((k / COLUMNS + 0.5) / ROWS, 2);
+                    double a = (double)results[k][1], b = integral(&cases[k]),
+                           w = pow((k / COLUMNS + 0.5) / ROWS, 2);
                     is += w * a, should += w * b, square += w * (a - b) * (a - b), all += w * b * b;
                 }
                 double error = sqrt(square / all);
-                print_message(" view %d: energy %.3f, L2 error %.3f;", e ? 20 : 60, is / should, error);
+                print_message(" view %d: energy %.3f, L2 error %.3f;", e ? 20 : 60, is / should,
+                              error);
                 if (fabs(is / should - 1) > shapes[i].energy || error > shapes[i].error) bad++;
             }
             print_message("\n");
@@ -409,7 +468,8 @@ static void a_point_without_a_radius_is_a_sun_of_its_direction(void **unused) {
     for (uint32_t i = 0; i < case_count; i++) {
         double l[3], v[3], f[3], d2 = 0;
         brdf_surface surface = {{1, 1, 1}, (double)cases[i].roughness, 1, 0, 0, 0};
-        for (int k = 0; k < 3; k++) l[k] = states[i].position[k], v[k] = (double)cases[i].view[k], d2 += l[k] * l[k];
+        for (int k = 0; k < 3; k++)
+            l[k] = states[i].position[k], v[k] = (double)cases[i].view[k], d2 += l[k] * l[k];
         unit3(l);
         brdf_eval(masu_split_sum, &surface, v, l, f);
         assert_true(fabs((double)results[i][1] * d2 - f[0]) < 1e-3 * (f[0] + 1e-3));

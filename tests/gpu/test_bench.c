@@ -147,7 +147,8 @@ static void check_rows(const char *folder, uint32_t least) {
                           r->setting, r->rest_flip, r->flip, r->fast_flip, r->parent,
                           without ? without->flip : (double)NAN);
             assert_true(without && r->rest_flip < 0.8 * without->rest_flip);
-            if (r->render_width < 64) assert_true(r->rest_flip < 0.9 * r->flip && fabs(r->fast_flip - r->flip) > 0);
+            if (r->render_width < 64)
+                assert_true(r->rest_flip < 0.9 * r->flip && fabs(r->fast_flip - r->flip) > 0);
         }
         assert_true(r->device_bytes > 0 && r->render_width <= 64 && r->render_height <= 36);
         assert_non_null(masu_rows_find(rows, count, r->parent));
@@ -203,7 +204,8 @@ static void check_ladder(const char *folder) {
     bool stamps = !strcmp(json_string_value(json_object_get(root, "clock")), "timestamps");
     assert_true(count <= MASU_SETTINGS_MOST);
     for (uint32_t i = 0; i < count; i++)
-        points[i] = (masu_ladder_point){stamps ? rows[i].gpu_ratio : rows[i].ratio, masu_row_error(&rows[i])};
+        points[i] = (masu_ladder_point){stamps ? rows[i].gpu_ratio : rows[i].ratio,
+                                        masu_row_error(&rows[i])};
     for (uint32_t i = 0; i < count; i++) {
         if (rows[i].flicker > rows[0].flicker + MASU_LADDER_FLICKER) points[i].time = 0.0;
     }
@@ -218,7 +220,8 @@ static void check_ladder(const char *folder) {
         const masu_row *row = &rows[rungs[i]];
         double ratio = json_number_value(json_object_get(rung, "ratio"));
         assert_string_equal(json_string_value(json_object_get(rung, "setting")), row->setting);
-        assert_true(fabs(json_number_value(json_object_get(rung, "flip")) - masu_row_error(row)) < 1e-9);
+        assert_true(fabs(json_number_value(json_object_get(rung, "flip")) - masu_row_error(row)) <
+                    1e-9);
         assert_true(before >= MASU_LADDER_APART * ratio && ratio > 0);
         before = ratio;
         for (const masu_knob *k = masu_knob_table(); k->name; k++)
@@ -280,7 +283,8 @@ static void two_folders_are_compared(void **state) {
     assert_int_equal(bench("%s/whole --against %s/whole", scratch, scratch), 0);
     assert_non_null(strstr(cli_out, "worst: FLIP +0.00 %"));
     assert_non_null(strstr(cli_out, ", 0 without a row"));
-    assert_int_equal(bench("%s/whole --against %s/whole --csv %s/csv", scratch, scratch, scratch), 0);
+    assert_int_equal(bench("%s/whole --against %s/whole --csv %s/csv", scratch, scratch, scratch),
+                     0);
     assert_string_equal(cli_out, "");
     text = read_file(in_scratch("csv"), NULL);
     assert_int_equal(strncmp(text, "rung,setting,", 13), 0);
@@ -305,8 +309,9 @@ static void reflections_have_an_error_of_their_own(void **state) {
                          0);
     }
     assert_true(is_in_scratch("mirror.pfm") && is_in_scratch("mirror.specular.pfm"));
-    assert_int_equal(
-        bench("--merge %s/mirror0 %s/mirror1 %s/mirror2 --out %s/mirrors", scratch, scratch, scratch, scratch), 0);
+    assert_int_equal(bench("--merge %s/mirror0 %s/mirror1 %s/mirror2 --out %s/mirrors", scratch,
+                           scratch, scratch, scratch),
+                     0);
     masu_row *rows = rows_of("mirrors", &count);
     assert_int_equal(count, 3);
     check_columns(rows, count, true, true);
@@ -342,7 +347,8 @@ static void one_row_is_a_page_and_depth_is_compared_with_the_field(void **state)
     check_markup("lone/index.html");
     check_ladder("lone");
     assert_int_equal(
-        bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/exact", path, scratch), 0);
+        bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/exact", path, scratch),
+        0);
     char *text = read_file(in_scratch("exact/sweep.json"), NULL);
     assert_non_null(strstr(text, "double precision"));
     free(text);
@@ -393,8 +399,8 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     print_message("  first rung: mean ratio %.4f, p95 of patches %.4f\n", ratio, p95);
     assert_true(fabs(ratio - 1) < 0.008 && p95 < 0.05);
     free(text);
-    assert_int_equal(bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), scratch),
-                     1);
+    assert_int_equal(
+        bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), scratch), 1);
     said("another sweep");
     assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_truth"), scratch), 1);
     said("another sweep");
@@ -452,7 +458,8 @@ static void shards_together_are_the_whole(void **state) {
                          0);
         assert_false(is_in_scratch(i ? "part1/index.html" : "part0/index.html"));
     }
-    assert_int_equal(bench("--merge %s/part1 %s/part0 --out %s/merged", scratch, scratch, scratch), 0);
+    assert_int_equal(bench("--merge %s/part1 %s/part0 --out %s/merged", scratch, scratch, scratch),
+                     0);
     masu_row *a = rows_of("whole", &whole), *b = rows_of("merged", &merged);
     free(rows_of("part1", &part));
     assert_int_equal(merged, whole);
@@ -472,8 +479,10 @@ static void shards_together_are_the_whole(void **state) {
     /* Merging a folder into itself changes nothing; a folder of another sweep is rejected. */
     assert_int_equal(bench("--merge %s/merged --out %s/merged --quiet", scratch, scratch), 0);
     assert_string_equal(cli_out, "");
-    assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, scratch), 0);
-    assert_int_equal(bench("--merge %s/merged %s/other --out %s/both", scratch, scratch, scratch), 1);
+    assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, scratch),
+                     0);
+    assert_int_equal(bench("--merge %s/merged %s/other --out %s/both", scratch, scratch, scratch),
+                     1);
     said("another sweep");
     assert_int_equal(bench("--merge %s/none --out %s/both2", scratch, scratch), 1);
     said("sweep.json");
@@ -591,7 +600,8 @@ static void rungs_are_timed_again(void **state) {
     uint32_t before, count;
     masu_row *table = table_of("whole", "results.csv", &count);
     masu_row *found = NULL;
-    for (uint32_t i = 0; i < count; i++) found = strcmp(table[i].setting, quick) ? found : &table[i];
+    for (uint32_t i = 0; i < count; i++)
+        found = strcmp(table[i].setting, quick) ? found : &table[i];
     assert_non_null(found);
     no_jump("whole", quick);
     found->ratio = found->gpu_ratio = 1e-3;
@@ -599,7 +609,8 @@ static void rungs_are_timed_again(void **state) {
     masu_row *old = rows_of("whole", &before);
     assert_true(spoilt(masu_rows_find(old, before, quick)));
     assert_false(is_in_scratch("whole/steady.csv"));
-    assert_int_equal(bench("%s " SMALL " --steady 0.2 --validate --out %s/whole", scene, scratch), 0);
+    assert_int_equal(bench("%s " SMALL " --steady 0.2 --validate --out %s/whole", scene, scratch),
+                     0);
     check_steady("whole", old, before);
     check_ladder("whole");
     masu_row *rows = rows_of("whole", &count);
@@ -626,7 +637,8 @@ static void a_row_without_its_picture_is_measured_again(void **state) {
     spoil("whole", "steady.csv", setting);
     snprintf(path, sizeof path, "%s/whole/pictures/%s.png", scratch, setting);
     assert_int_equal(unlink(path), 0);
-    assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene_path("test_both"), scratch), 0);
+    assert_int_equal(
+        bench("%s " SMALL " --steady 0.2 --out %s/whole", scene_path("test_both"), scratch), 0);
     cli_said(": 1 settings measured");
     masu_row *rows = rows_of("whole", &after);
     assert_int_equal(after, before);
@@ -750,7 +762,8 @@ static void rungs_of_no_use_are_refused(void **state) {
                            scene_path("test_both"), scratch, scratch),
                      1);
     said("\"width\" in sweep.json");
-    assert_int_equal(bench("--merge --rungs-of %s/odd %s/whole --out %s/y", scratch, scratch, scratch), 2);
+    assert_int_equal(
+        bench("--merge --rungs-of %s/odd %s/whole --out %s/y", scratch, scratch, scratch), 2);
     said("--rungs-of");
 }
 

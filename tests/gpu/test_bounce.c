@@ -49,7 +49,8 @@ static void open_rooms_at(rooms *r, const char *path) {
     unsigned char *at = masu_buffer_pointer(&r->s.m->device, MASU_BUFFER_PROBES, 0);
     assert_non_null(at);
     uint64_t lit = (r->v.probe_words + 3) / 4 * 4;
-    r->live = (uint32_t *)(void *)(at + sizeof *p) + lit + (uint64_t)r->probes * MASU_PROBE_LIT_WORDS;
+    r->live =
+        (uint32_t *)(void *)(at + sizeof *p) + lit + (uint64_t)r->probes * MASU_PROBE_LIT_WORDS;
     r->sets = r->live + (uint64_t)r->probes * MASU_PROBE_LIT_WORDS;
 }
 
@@ -82,14 +83,17 @@ static float half_at(const uint32_t *words, uint32_t i) {
     return masu_probe_half(words[i / 2] >> (i & 1 ? 16 : 0) & 0xFFFFu);
 }
 
-static int is_valid(const rooms *r, uint32_t probe) { return half_at(r->live + (size_t)probe * MASU_PROBE_LIT_WORDS, 3) > 0; }
+static int is_valid(const rooms *r, uint32_t probe) {
+    return half_at(r->live + (size_t)probe * MASU_PROBE_LIT_WORDS, 3) > 0;
+}
 
 /* Mean irradiance / pi, green, of points on the floor from x to x + 1.6, by the shader's lookup. */
 static double floor_at(const rooms *r, float x) {
     uint64_t random = 5;
     double sum = 0;
     for (uint32_t i = 0; i < POINTS; i++) {
-        const float p[3] = {x + 1.6f * random_float(&random), 0, 0.2f + 2.6f * random_float(&random)};
+        const float p[3] = {x + 1.6f * random_float(&random), 0,
+                            0.2f + 2.6f * random_float(&random)};
         const float n[3] = {0, 1, 0};
         float out[3];
         (void)masu_probe_lookup(r->v.probes, r->v.probe_data, r->live, p, n, out);
@@ -141,14 +145,18 @@ static void bake_room(const char *name, const char *material) {
     for (int i = 0; i < 36; i++) indices[i] = (uint16_t)(i / 6 * 4 + two[i % 6]);
     begin();
     int positions = floats(at[0], "VEC3", 24, 3), triangles = shorts(indices, 36);
-    (void)finish("\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},"
-                 "\"indices\":%d,\"material\":0}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]",
-                 material, positions, triangles);
-    bake_scene(name, "{\"ambient_occlusion\": false, \"reflections\": false, \"models\": [{\"file\": \"x.glb\"}],"
-                     "\"camera\": {\"keys\": [{\"position\": [0.3, 1.5, 0.3], \"target\": [1.5, 1, 1.5]}]},"
-                     "\"sun\": {\"intensity\": 0}, \"ambient\": [0, 0, 0],"
-                     "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]},"
-                     "\"bounce\": {\"box\": [[0, 0, 0], [2, 2, 2]]}}");
+    (void)finish(
+        "\"materials\":[{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},"
+        "\"indices\":%d,\"material\":0}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]",
+        material, positions, triangles);
+    bake_scene(
+        name,
+        "{\"ambient_occlusion\": false, \"reflections\": false, \"models\": [{\"file\": "
+        "\"x.glb\"}],"
+        "\"camera\": {\"keys\": [{\"position\": [0.3, 1.5, 0.3], \"target\": [1.5, 1, 1.5]}]},"
+        "\"sun\": {\"intensity\": 0}, \"ambient\": [0, 0, 0],"
+        "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]},"
+        "\"bounce\": {\"box\": [[0, 0, 0], [2, 2, 2]]}}");
 }
 
 /* An f0 above 0.08 with a colour. A surface returns the reference's mean over all angles. The brightest
@@ -168,10 +176,11 @@ static void a_furnace_of_strong_dielectrics(void **state) {
             returned[c] += (gray[c] - less + base * (1 - gray[c])) / ANGLES;
         }
     }
-    bake_room("strong", "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.3,0.3,0.3,1],"
-                        "\"metallicFactor\":0,\"roughnessFactor\":0.9},\"emissiveFactor\":[0.5,0.5,0.5],"
-                        "\"extensions\":{\"KHR_materials_ior\":{\"ior\":3},"
-                        "\"KHR_materials_specular\":{\"specularColorFactor\":[1,0.5,0.25]}}");
+    bake_room("strong",
+              "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.3,0.3,0.3,1],"
+              "\"metallicFactor\":0,\"roughnessFactor\":0.9},\"emissiveFactor\":[0.5,0.5,0.5],"
+              "\"extensions\":{\"KHR_materials_ior\":{\"ior\":3},"
+              "\"KHR_materials_specular\":{\"specularColorFactor\":[1,0.5,0.25]}}");
     rooms r;
     open_rooms_at(&r, baked_scene("strong"));
     (void)settle(&r, 60);
@@ -181,7 +190,8 @@ static void a_furnace_of_strong_dielectrics(void **state) {
             mean += (double)half_at(r.live + (size_t)i * MASU_PROBE_LIT_WORDS, c) * 0.282095;
         mean /= r.probes;
         print_message("channel %u: %.4f, by the reference %.4f\n", c, mean, want);
-        if (!(fabs(mean - want) < 0.01 * want)) fail_msg("channel %u: %.4f, not %.4f", c, mean, want);
+        if (!(fabs(mean - want) < 0.01 * want))
+            fail_msg("channel %u: %.4f, not %.4f", c, mean, want);
     }
     close_rooms(&r);
 }
@@ -192,10 +202,13 @@ static void poison_is_gone_after_a_window(void **state) {
     rooms r;
     open_rooms(&r, "test_bounce_furnace");
     (void)settle(&r, 8);
-    for (uint32_t k = 0; k < MASU_PROBE_WORDS; k++) r.sets[3 * MASU_BOUNCE_SETS * MASU_PROBE_WORDS + k] = 0x7E007C00u;
-    for (uint32_t k = 0; k < MASU_PROBE_LIT_WORDS; k++) r.live[7 * MASU_PROBE_LIT_WORDS + k] = 0xFFFFFFFFu;
+    for (uint32_t k = 0; k < MASU_PROBE_WORDS; k++)
+        r.sets[3 * MASU_BOUNCE_SETS * MASU_PROBE_WORDS + k] = 0x7E007C00u;
+    for (uint32_t k = 0; k < MASU_PROBE_LIT_WORDS; k++)
+        r.live[7 * MASU_PROBE_LIT_WORDS + k] = 0xFFFFFFFFu;
     for (uint32_t f = 0; f < 4; f++) {
-        const uint16_t *pixels = draw_image(&r.s, &(masu_frame_desc){.time_step = 0.01f}, MASU_READBACK_HDR, NULL);
+        const uint16_t *pixels =
+            draw_image(&r.s, &(masu_frame_desc){.time_step = 0.01f}, MASU_READBACK_HDR, NULL);
         for (uint32_t i = 0; i < W * H * 4; i++) assert_true((pixels[i] & 0x7C00u) != 0x7C00u);
     }
     (void)settle(&r, 28); /* set 0 has been replaced */
@@ -204,7 +217,8 @@ static void poison_is_gone_after_a_window(void **state) {
         assert_true((r.sets[i] & 0x7C00u) != 0x7C00u && (r.sets[i] >> 16 & 0x7C00u) != 0x7C00u);
     (void)settle(&r, 120);
     for (uint32_t i = 0; i < r.probes; i++)
-        assert_float_equal(half_at(r.live + (size_t)i * MASU_PROBE_LIT_WORDS, 1) * 0.282095f, 1, 0.01);
+        assert_float_equal(half_at(r.live + (size_t)i * MASU_PROBE_LIT_WORDS, 1) * 0.282095f, 1,
+                           0.01);
     close_rooms(&r);
 }
 
@@ -232,8 +246,8 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
         most = fmax(most, curve[f] / final);
     }
     uint32_t bound = 29 * 192 * r.s.m->bounce.valid / (10 * RAYS);
-    print_message("%u probes: 90 %% after %u frames, at most %u; largest fall %.4f, most %.4f\n", r.s.m->bounce.valid,
-                  at_90 + 1, bound, fall, most);
+    print_message("%u probes: 90 %% after %u frames, at most %u; largest fall %.4f, most %.4f\n",
+                  r.s.m->bounce.valid, at_90 + 1, bound, fall, most);
     assert_true(final > 0.01 && at_90 + 1 <= bound && fall < 0.01 && most < 1.02);
     /* Pausing loses nothing: two more windows would give bit-identical data. Then nothing is
      * traced. */
@@ -279,10 +293,12 @@ static void baked_daylight_counts_once(void **state) {
             if (k != 1) assert_int_equal(r.live[i * MASU_PROBE_LIT_WORDS + k], 0);
     }
     assert_true(valid > r.probes / 2); /* they have been traced */
-    for (uint32_t i = 0; i < r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS; i++) assert_int_equal(r.sets[i], 0);
+    for (uint32_t i = 0; i < r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS; i++)
+        assert_int_equal(r.sets[i], 0);
     /* A change of the sun is no change for them either. */
     uint32_t quiet = r.s.m->bounce.quiet;
-    masu_light light = {.sun_direction = {0.2f, 0.6f, 0.75f}, .sun_color = {2, 2, 2}, .ambient = {1, 1, 1}};
+    masu_light light = {
+        .sun_direction = {0.2f, 0.6f, 0.75f}, .sun_color = {2, 2, 2}, .ambient = {1, 1, 1}};
     masu_commands commands;
     draw(&r.s, &(masu_frame_desc){.light = &light}, &commands, NULL);
     assert_true(r.s.m->bounce.quiet >= quiet);

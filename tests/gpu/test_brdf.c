@@ -53,7 +53,9 @@ static void direction(float out[4]) {
 }
 
 static test_case any_case(void) {
-    test_case c = {.albedo = {random_float(&state), random_float(&state), random_float(&state)}, .roughness = random_float(&state), .specular = random_float(&state)};
+    test_case c = {.albedo = {random_float(&state), random_float(&state), random_float(&state)},
+                   .roughness = random_float(&state),
+                   .specular = random_float(&state)};
     c.metallic = random_word(&state) & 1 ? 0 : random_float(&state);
     c.coat = random_word(&state) & 1 ? 0 : random_float(&state);
     c.coat_roughness = random_float(&state);
@@ -127,7 +129,8 @@ static void coats_may_lean(void **unused) {
         c->coat = fmaxf(c->coat, 0.25f);
         c->roughness = fmaxf(c->roughness, 0.1f);
         c->coat_roughness = fmaxf(c->coat_roughness, 0.1f);
-        double z = 0.7 + 0.3 * (double)random_float(&state), phi = 6.283185307179586 * (double)random_float(&state);
+        double z = 0.7 + 0.3 * (double)random_float(&state),
+               phi = 6.283185307179586 * (double)random_float(&state);
         /* and with its axes inverted */
         if (i & 1) z = -z, c->view[2] = -c->view[2], c->light[2] = -c->light[2];
         c->normal[0] = (float)(sqrt(1 - z * z) * cos(phi));
@@ -158,7 +161,8 @@ static void coats_may_lean(void **unused) {
         brdf_over(masu_split_sum, &s, n, v, l, truth);
         beneath += n[0] * l[0] + n[1] * l[1] + n[2] * l[2] <= 0;
         for (int k = 0; k < 3; k++)
-            worst = worst_of(worst, fabs((double)results[i].light[k] - truth[k]) / (1e-3 + truth[k]));
+            worst =
+                worst_of(worst, fabs((double)results[i].light[k] - truth[k]) / (1e-3 + truth[k]));
     }
     print_message("  error of %.1e relative to (0.001 + value) at most; %.0f lights are below the "
                   "coat's horizon\n",

@@ -72,8 +72,11 @@ static masu_instance any_instance(world *w) {
 static masu_punctual_light any_light(world *w) {
     switch (any(w, 5)) {
         case 0: return (masu_punctual_light){(uint64_t)any(w, ~0u) << 32 | any(w, 64)};
-        case 1: return w->lights_gone ? w->gone_lights[any(w, w->lights_gone)] : (masu_punctual_light){0};
-        case 2: return w->light_count ? w->lights[any(w, w->light_count)] : (masu_punctual_light){0};
+        case 1:
+            return w->lights_gone ? w->gone_lights[any(w, w->lights_gone)]
+                                  : (masu_punctual_light){0};
+        case 2:
+            return w->light_count ? w->lights[any(w, w->light_count)] : (masu_punctual_light){0};
         default: return masu_punctual_light_at(w->s.m, any(w, 3));
     }
 }
@@ -106,7 +109,8 @@ static masu_result instance_shown(world *w, masu_detail *d) {
 }
 
 static masu_result look(world *w, masu_detail *d) {
-    masu_look before, after, l = {.flags = any(w, 9), .hidden_views = any(w, 3), .pick_mask = any(w, 3)};
+    masu_look before, after,
+        l = {.flags = any(w, 9), .hidden_views = any(w, 3), .pick_mask = any(w, 3)};
     masu_instance i = any_instance(w);
     numbers(w, l.tint, 3);
     numbers(w, l.uv_scale, 2);
@@ -176,7 +180,8 @@ static masu_result model_remove(world *w, masu_detail *d) {
     if (is_of_scene(w, model)) assert_int_equal(result, MASU_OK);
     for (uint32_t i = 0; i < w->models_gone; i++) {
         masu_model_state state;
-        assert_int_equal(masu_model_get(w->s.m, w->gone_models[i], &state, NULL), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_model_get(w->s.m, w->gone_models[i], &state, NULL),
+                         MASU_ERROR_ARGUMENT);
     }
     return result;
 }
@@ -188,16 +193,25 @@ static masu_result node(world *w, masu_detail *d) {
 }
 
 static masu_punctual_light_state light_state(world *w) {
-    masu_punctual_light_state l = {.range = 4, .radius = 0.05f, .spot = any(w, 3), .inner = 0.2f, .outer = 0.5f,
-                                   .shape = (masu_light_shape)any(w, 4), .two_sided = any(w, 3)};
+    masu_punctual_light_state l = {.range = 4,
+                                   .radius = 0.05f,
+                                   .spot = any(w, 3),
+                                   .inner = 0.2f,
+                                   .outer = 0.5f,
+                                   .shape = (masu_light_shape)any(w, 4),
+                                   .two_sided = any(w, 3)};
     if (any(w, 2))
-        return (masu_punctual_light_state){.range = 4, .radius = 0.05f, .color = {1, (float)any(w, 5), 1},
-                                           .position = {(double)any(w, 5), 1, 1}, .no_shadow = any(w, 2)};
+        return (masu_punctual_light_state){.range = 4,
+                                           .radius = 0.05f,
+                                           .color = {1, (float)any(w, 5), 1},
+                                           .position = {(double)any(w, 5), 1, 1},
+                                           .no_shadow = any(w, 2)};
     for (int k = 0; k < 3; k++) l.position[k] = (double)number(w);
     numbers(w, l.direction, 3);
     numbers(w, l.color, 3);
     numbers(w, l.half_axis, 3);
-    if (any(w, 4) == 0) l.range = number(w), l.radius = number(w), l.inner = number(w), l.outer = number(w);
+    if (any(w, 4) == 0)
+        l.range = number(w), l.radius = number(w), l.inner = number(w), l.outer = number(w);
     if (any(w, 3) == 0) l.instance = any_instance(w);
     return l;
 }
@@ -241,20 +255,23 @@ static masu_result light_remove(world *w, masu_detail *d) {
     }
     for (uint32_t i = 0; i < w->lights_gone; i++) {
         masu_punctual_light_state state;
-        assert_int_equal(masu_punctual_light_get(w->s.m, w->gone_lights[i], &state, NULL), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_punctual_light_get(w->s.m, w->gone_lights[i], &state, NULL),
+                         MASU_ERROR_ARGUMENT);
     }
     return result;
 }
 
 static masu_result material(world *w, masu_detail *d) {
-    masu_material m = any(w, 6) ? masu_material_at(w->s.m, any(w, 7)) : (masu_material){any(w, ~0u)};
+    masu_material m =
+        any(w, 6) ? masu_material_at(w->s.m, any(w, 7)) : (masu_material){any(w, ~0u)};
     masu_material_state before, after;
     masu_result got = masu_material_get(w->s.m, m, &before, NULL);
     if (got != MASU_OK) before = (masu_material_state){.roughness = 0.5f};
     masu_material_state state = before;
     numbers(w, state.base_color, 3);
     if (any(w, 2)) numbers(w, state.emissive, 3);
-    if (any(w, 4) == 0) state.roughness = number(w), state.metallic = number(w), state.opacity = number(w);
+    if (any(w, 4) == 0)
+        state.roughness = number(w), state.metallic = number(w), state.opacity = number(w);
     if (any(w, 8) == 0) state.texture = any(w, 4);
     masu_result result = masu_material_set(w->s.m, m, &state, d);
     if (got == MASU_OK && result != MASU_OK) {
@@ -268,11 +285,13 @@ static masu_result texture(world *w, masu_detail *d) {
     static uint32_t texels[16 * 16];
     VkRect2D rect = {{(int32_t)any(w, 18) - 1, (int32_t)any(w, 18) - 1}, {any(w, 18), any(w, 18)}};
     for (uint32_t i = 0; i < 256; i++) texels[i] = any(w, ~0u);
-    return masu_texture_write(w->s.m, any(w, 4), any(w, 3) ? NULL : &rect, texels, any(w, 3) ? 0 : any(w, 80), d);
+    return masu_texture_write(w->s.m, any(w, 4), any(w, 3) ? NULL : &rect, texels,
+                              any(w, 3) ? 0 : any(w, 80), d);
 }
 
 static masu_result governor(world *w, masu_detail *d) {
-    masu_governor_setting g = {.mode = (masu_governor_mode)any(w, 4), .rung = any(w, 3), .target_ms = number(w) * 20};
+    masu_governor_setting g = {
+        .mode = (masu_governor_mode)any(w, 4), .rung = any(w, 3), .target_ms = number(w) * 20};
     return masu_governor_set(w->s.m, &g, d);
 }
 
@@ -283,11 +302,12 @@ static masu_result frame(world *w, masu_detail *d) {
     uint32_t count = any(w, 4);
     memset(particles, 0, sizeof particles);
     for (uint32_t i = 0; i < count && i < 3; i++) {
-        particles[i] = (masu_particle){.position = {(double)number(w), (double)number(w), (double)number(w)},
-                                       .half_width = 0.2f,
-                                       .color = {1, 1, 1},
-                                       .opacity = 0.5f,
-                                       .texture = any(w, 4)};
+        particles[i] =
+            (masu_particle){.position = {(double)number(w), (double)number(w), (double)number(w)},
+                            .half_width = 0.2f,
+                            .color = {1, 1, 1},
+                            .opacity = 0.5f,
+                            .texture = any(w, 4)};
         if (any(w, 6) == 0) particles[i].half_width = number(w), particles[i].opacity = number(w);
     }
     f.particles = particles, f.particle_count = count;
@@ -299,13 +319,15 @@ static masu_result frame(world *w, masu_detail *d) {
         f.time_step = 0.02f;
         f.rung = any(w, 2);
         const uint16_t *pixels = draw_image(&w->s, &f, MASU_READBACK_HDR, NULL);
-        for (uint32_t i = 0; i < WIDTH * HEIGHT * 4; i++) assert_true((pixels[i] & 0x7C00u) != 0x7C00u);
+        for (uint32_t i = 0; i < WIDTH * HEIGHT * 4; i++)
+            assert_true((pixels[i] & 0x7C00u) != 0x7C00u);
         w->frames++;
         return MASU_OK;
     }
     masu_result result = masu_frame(w->s.m, &f, &commands, d);
     char error[ERROR_SIZE];
-    if (result == MASU_OK) assert_ok(masu_headless_run(&w->s.host, commands.buffer, error, sizeof error));
+    if (result == MASU_OK)
+        assert_ok(masu_headless_run(&w->s.host, commands.buffer, error, sizeof error));
     return result;
 }
 
@@ -319,15 +341,22 @@ typedef struct call {
 static void any_sequence_of_calls_is_obeyed_or_refused(void **state) {
     (void)state;
     static world w;
-    static call calls[] = {
-        {"instance_set_transform", instance_transform, 0, 0, ""}, {"instance_set_position", instance_position, 0, 0, ""},
-        {"instance_show", instance_shown, 0, 0, ""},   {"instance_set_look", look, 0, 0, ""},
-        {"model_set_transform", model_transform, 0, 0, ""}, {"model_show", model_shown, 0, 0, ""},
-        {"model_add", model_add, 0, 0, ""},            {"model_remove", model_remove, 0, 0, ""},
-        {"model_node_set", node, 0, 0, ""},            {"punctual_light_set", light_set, 0, 0, ""},
-        {"punctual_light_add", light_add, 0, 0, ""},   {"punctual_light_remove", light_remove, 0, 0, ""},
-        {"material_set", material, 0, 0, ""},          {"texture_write", texture, 0, 0, ""},
-        {"governor_set", governor, 0, 0, ""},          {"frame", frame, 0, 0, ""}};
+    static call calls[] = {{"instance_set_transform", instance_transform, 0, 0, ""},
+                           {"instance_set_position", instance_position, 0, 0, ""},
+                           {"instance_show", instance_shown, 0, 0, ""},
+                           {"instance_set_look", look, 0, 0, ""},
+                           {"model_set_transform", model_transform, 0, 0, ""},
+                           {"model_show", model_shown, 0, 0, ""},
+                           {"model_add", model_add, 0, 0, ""},
+                           {"model_remove", model_remove, 0, 0, ""},
+                           {"model_node_set", node, 0, 0, ""},
+                           {"punctual_light_set", light_set, 0, 0, ""},
+                           {"punctual_light_add", light_add, 0, 0, ""},
+                           {"punctual_light_remove", light_remove, 0, 0, ""},
+                           {"material_set", material, 0, 0, ""},
+                           {"texture_write", texture, 0, 0, ""},
+                           {"governor_set", governor, 0, 0, ""},
+                           {"frame", frame, 0, 0, ""}};
     const uint32_t kinds = sizeof calls / sizeof *calls;
     const char *longer = getenv("LONG");
     const uint32_t count = longer && *longer ? 50 * CALLS : CALLS;
@@ -337,9 +366,13 @@ static void any_sequence_of_calls_is_obeyed_or_refused(void **state) {
     d.desc.rung_count = 2;
     d.desc.rungs[0] = (masu_rung){.scale = 1.0f};
     d.desc.rungs[1] = (masu_rung){.scale = 0.5f};
-    d.desc.reserve = (masu_reserve){.models = RESERVE, .lights = RESERVE, .particles = 2, .textures = 2,
+    d.desc.reserve = (masu_reserve){.models = RESERVE,
+                                    .lights = RESERVE,
+                                    .particles = 2,
+                                    .textures = 2,
                                     .texture_size = {16, 16}};
-    d.desc.instance_looks = d.desc.double_positions = d.desc.mutable_materials = d.desc.area_lights = 1;
+    d.desc.instance_looks = d.desc.double_positions = d.desc.mutable_materials =
+        d.desc.area_lights = 1;
     d.desc.governor = (masu_governor_desc){.mode = MASU_GOVERNOR_ON, .target_ms = 50};
     d.desc.readback = MASU_READBACK_HDR;
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
@@ -361,24 +394,28 @@ static void any_sequence_of_calls_is_obeyed_or_refused(void **state) {
             continue;
         }
         c->bad++;
-        if (result != MASU_ERROR_ARGUMENT && result != MASU_ERROR_LIMIT && result != MASU_ERROR_STATE)
+        if (result != MASU_ERROR_ARGUMENT && result != MASU_ERROR_LIMIT &&
+            result != MASU_ERROR_STATE)
             fail_msg("call %u, %s: %s: %s", i, c->name, masu_result_string(result), detail.text);
-        if (detail.result != result || !detail.what || !*detail.what || !*detail.text || strchr(detail.text, '\n'))
-            fail_msg("call %u, %s: %s without one line of reason: '%s'", i, c->name, masu_result_string(result),
-                     detail.text);
+        if (detail.result != result || !detail.what || !*detail.what || !*detail.text ||
+            strchr(detail.text, '\n'))
+            fail_msg("call %u, %s: %s without one line of reason: '%s'", i, c->name,
+                     masu_result_string(result), detail.text);
         memcpy(c->why, detail.text, sizeof c->why);
     }
     assert_int_equal(wrap.setup_calls, made);
     assert_true(w.frames > count / 40);
     print_message("%u calls, %u frames drawn and read; obeyed, refused:\n", count, w.frames);
     for (uint32_t k = 0; k < kinds; k++) {
-        print_message("  %-24s %6u %6u  %s\n", calls[k].name, calls[k].good, calls[k].bad, calls[k].why);
+        print_message("  %-24s %6u %6u  %s\n", calls[k].name, calls[k].good, calls[k].bad,
+                      calls[k].why);
     }
     for (uint32_t k = 0; k < kinds; k++) assert_true(calls[k].good > 0 && calls[k].bad > 0);
     close_session(&w.s);
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(any_sequence_of_calls_is_obeyed_or_refused)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_sequence_of_calls_is_obeyed_or_refused)};
     return cmocka_run_group_tests_name("calls", tests, NULL, NULL);
 }

@@ -81,7 +81,8 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     assert_int_equal(
         cli_run("render %s -o %s/x.png --setting scale=0.5 --setting aa=fxaa", scene, scratch), 2);
     cli_complained("join the values by '+'");
-    assert_int_equal(cli_run("render %s -o %s/x.png --setting base --ladder auto", scene, scratch), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --setting base --ladder auto", scene, scratch),
+                     2);
     cli_complained("with --ladder");
     assert_int_equal(cli_run("upscale a.png --size 4x4"), 2);
     cli_complained("output");
@@ -129,8 +130,8 @@ static void bad_scene_files_are_named_with_their_fault(void **state) {
 static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    assert_int_equal(cli_run("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, scratch),
-                     1);
+    assert_int_equal(
+        cli_run("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, scratch), 1);
     cli_complained("folder.png");
     write_bytes("old.png", "old", 3);
     assert_int_equal(cli_run("upscale %s/none.png %s/old.png --size 8x8", scratch, scratch), 1);
@@ -146,8 +147,8 @@ static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(vo
 
 static void an_unknown_device_lists_those_that_are_there(void **state) {
     (void)state;
-    assert_int_equal(cli_run("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), scratch),
-                     1);
+    assert_int_equal(
+        cli_run("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), scratch), 1);
     cli_complained("nonesuch");
     assert_non_null(strstr(cli_err, "0 '"));
     assert_int_equal(cli_run("render %s -o %s/x.png --device 0 --frame --size 16x16 --quiet",
@@ -159,8 +160,9 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     (void)state;
     const char *scene = scene_path("test_both");
     assert_int_equal(
-        cli_run("render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet",
-             scene, scratch, scratch),
+        cli_run(
+            "render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet",
+            scene, scratch, scratch),
         0);
     assert_string_equal(cli_err, "");
     struct masu_image image;
@@ -183,17 +185,20 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
         if (!strstr(cli_out, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
     }
     assert_null(strstr(cli_out, "\"exposure\"")); /* no auto-exposure */
-    assert_int_equal(cli_run("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
-                          "--dither --validate --quiet",
-                          scene, scratch),
-                     0);
+    assert_int_equal(
+        cli_run("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
+                "--dither --validate --quiet",
+                scene, scratch),
+        0);
     assert_non_null(strstr(cli_out, "\"exposure\""));
     assert_non_null(strstr(cli_out, "\"meter\""));
-    assert_int_equal(cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, scratch),
-                     0);
-    assert_true(is_in_scratch("f-000.png") && is_in_scratch("f-001.png") && !is_in_scratch("f-002.png"));
+    assert_int_equal(
+        cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, scratch), 0);
+    assert_true(is_in_scratch("f-000.png") && is_in_scratch("f-001.png") &&
+                !is_in_scratch("f-002.png"));
     /* Clips play unless they are disabled. */
-    static const char *const ways[] = {"", " --animate", " --animate=off", " --animate=off --time 0"};
+    static const char *const ways[] = {"", " --animate", " --animate=off",
+                                       " --animate=off --time 0"};
     uint64_t hash[4];
     for (size_t i = 0; i < 4; i++) {
         assert_int_equal(cli_run("render %s -o %s/f.png --frame --size 48x32 --quiet --time 0.5%s",
@@ -214,19 +219,22 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
 static void the_governor_reports_what_it_has_done(void **state) {
     (void)state;
     const char *scene = scene_path("test_sphere_sdf");
-    assert_int_equal(cli_run("render %s --target-ms 1000 --ladder off --frames 12 --size 32x24 --times %s/t.csv "
-                          "--stats %s/g.json",
-                          scene, scratch, scratch),
-                     0);
+    assert_int_equal(
+        cli_run("render %s --target-ms 1000 --ladder off --frames 12 --size 32x24 --times %s/t.csv "
+                "--stats %s/g.json",
+                scene, scratch, scratch),
+        0);
     assert_non_null(strstr(cli_out, "governor: target 1000.00 ms, 0 of 12 frames over it"));
     assert_non_null(strstr(cli_out, "rung 0, scale 1.000:    12 frames"));
     assert_non_null(strstr(cli_out, "rung 7, scale 0.400:     0 frames"));
     take_text("t.csv", cli_out, sizeof cli_out);
-    assert_non_null(strstr(cli_out, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n0,0.0000,0,1.0000,"));
+    assert_non_null(
+        strstr(cli_out, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n0,0.0000,0,1.0000,"));
     assert_non_null(strstr(cli_out, "the best rung meets the target"));
     take_text("g.json", cli_out, sizeof cli_out);
     assert_non_null(strstr(cli_out, "\"predicted_ms\""));
-    assert_int_equal(cli_run("render %s --target-ms 5 --ladder off --rung 3 --frames 5 --size 32x24", scene), 0);
+    assert_int_equal(
+        cli_run("render %s --target-ms 5 --ladder off --rung 3 --frames 5 --size 32x24", scene), 0);
     assert_non_null(strstr(cli_out, "rung 3, scale 0.675:     5 frames"));
     assert_non_null(strstr(cli_out, "the rung is fixed"));
     assert_int_equal(cli_run("render %s --target-ms 0.016", scene), 2);
@@ -235,15 +243,16 @@ static void the_governor_reports_what_it_has_done(void **state) {
 /* A ladder.json as masu bench writes it, of two rungs. */
 static void write_ladder(const char *name, const char *second_ratio, const char *knob) {
     char text[2048];
-    snprintf(text, sizeof text,
-             "{\"scene\": \"a.masu\", \"hash\": \"0\", \"driver\": \"D\", \"date\": \"2026-01-02\", "
-             "\"width\": 32, \"height\": 24, \"time\": 0.0, \"clock\": \"wall\", \"error\": \"flip\", "
-             "\"rungs\": [{\"setting\": \"base\", \"ratio\": 1, \"wall_ms\": 2, \"gpu_ms\": 2, "
-             "\"flip\": 0.1, \"rmse\": 3, \"knobs\": {\"scale\": 1, \"aa\": \"smaa-low\"}}, "
-             "{\"setting\": \"scale=0.5\", \"ratio\": %s, \"wall_ms\": 1, \"gpu_ms\": 1, "
-             "\"flip\": 0.25, \"rmse\": 5, \"knobs\": {\"scale\": 0.5, \"march_steps\": 64, "
-             "\"shadow_refresh\": [1, 2, 4, 8]%s}}]}",
-             second_ratio, knob);
+    snprintf(
+        text, sizeof text,
+        "{\"scene\": \"a.masu\", \"hash\": \"0\", \"driver\": \"D\", \"date\": \"2026-01-02\", "
+        "\"width\": 32, \"height\": 24, \"time\": 0.0, \"clock\": \"wall\", \"error\": \"flip\", "
+        "\"rungs\": [{\"setting\": \"base\", \"ratio\": 1, \"wall_ms\": 2, \"gpu_ms\": 2, "
+        "\"flip\": 0.1, \"rmse\": 3, \"knobs\": {\"scale\": 1, \"aa\": \"smaa-low\"}}, "
+        "{\"setting\": \"scale=0.5\", \"ratio\": %s, \"wall_ms\": 1, \"gpu_ms\": 1, "
+        "\"flip\": 0.25, \"rmse\": 5, \"knobs\": {\"scale\": 0.5, \"march_steps\": 64, "
+        "\"shadow_refresh\": [1, 2, 4, 8]%s}}]}",
+        second_ratio, knob);
     write_text(name, text);
 }
 
@@ -265,19 +274,23 @@ static void ladders_are_read_and_shown(void **state) {
     assert_non_null(strstr(cli_out, "time 0.500, FLIP 0.2500"));
     assert_int_equal(cli_run("plan %s --size 32x24 --ladder auto", scene), 0);
     assert_non_null(strstr(cli_out, "class: both; ladder: "));
-    assert_int_equal(cli_run("render %s --target-ms 1000 --frames 3 --size 32x24 --ladder %s/l.json",
-                          scene, scratch),
-                     0);
+    assert_int_equal(
+        cli_run("render %s --target-ms 1000 --frames 3 --size 32x24 --ladder %s/l.json", scene,
+                scratch),
+        0);
     assert_non_null(strstr(cli_out, "rung 1, scale 0.500:     0 frames"));
     assert_null(strstr(cli_out, "rung 2"));
     assert_int_equal(cli_run("render %s -o %s/l.png --frame --rung 1 --size 32x24 --ladder auto",
                              scene, scratch),
                      0);
-    assert_int_equal(cli_run("render %s -o %s/l.png --rung 2 --size 32x24 --ladder %s/l.json --quiet",
-                          scene, scratch, scratch),
-                     2);
+    assert_int_equal(
+        cli_run("render %s -o %s/l.png --rung 2 --size 32x24 --ladder %s/l.json --quiet", scene,
+                scratch, scratch),
+        2);
     cli_complained("--rung: expected 0 to 1, found 2");
-    assert_int_equal(cli_run("render %s -o %s/l.png --size 32x24 --ladder %s/bad.json", scene, scratch, scratch), 1);
+    assert_int_equal(
+        cli_run("render %s -o %s/l.png --size 32x24 --ladder %s/bad.json", scene, scratch, scratch),
+        1);
     cli_complained("bad.json: rungs[1]: ratio");
 }
 
@@ -318,8 +331,8 @@ static int changed_by(const char *scene, const char *options) {
     int changed = 0;
     for (int k = 0; k < 2; k++) {
         snprintf(name, sizeof name, "%s/changed%d.png", scratch, k);
-        if (cli_run("render %s -o %s --frame --size 64x48 --time 0.4 --animate %s", scene_path(scene), name,
-                    k ? options : ""))
+        if (cli_run("render %s -o %s --frame --size 64x48 --time 0.4 --animate %s",
+                    scene_path(scene), name, k ? options : ""))
             fail_msg("%s: %s", options, cli_err);
         assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
     }
@@ -337,13 +350,18 @@ static void parameters_clips_and_light_are_set(void **state) {
     assert_in_range(changed_by("test_skin", "--clip Wuson_Walk"), 50, 4 * 64 * 48);
     assert_in_range(changed_by("test_velocity", "--sun 200,10"), 100, 4 * 64 * 48);
     assert_in_range(changed_by("test_velocity", "--exposure 3"), 100, 4 * 64 * 48);
-    assert_int_equal(cli_run("render %s -o %s/x.png --param none=1", scene_path("test_velocity"), scratch), 1);
+    assert_int_equal(
+        cli_run("render %s -o %s/x.png --param none=1", scene_path("test_velocity"), scratch), 1);
     assert_non_null(strstr(cli_err, "no parameter 'none', expected one of radius"));
-    assert_int_equal(cli_run("render %s -o %s/x.png --param radius=1e9", scene_path("test_velocity"), scratch), 1);
+    assert_int_equal(
+        cli_run("render %s -o %s/x.png --param radius=1e9", scene_path("test_velocity"), scratch),
+        1);
     assert_non_null(strstr(cli_err, "radius: expected "));
-    assert_int_equal(cli_run("render %s -o %s/x.png --param radius", scene_path("test_velocity"), scratch), 1);
+    assert_int_equal(
+        cli_run("render %s -o %s/x.png --param radius", scene_path("test_velocity"), scratch), 1);
     assert_non_null(strstr(cli_err, "expected NAME=NUMBER, found 'radius'"));
-    assert_int_equal(cli_run("render %s -o %s/x.png --clip none", scene_path("test_skin"), scratch), 1);
+    assert_int_equal(cli_run("render %s -o %s/x.png --clip none", scene_path("test_skin"), scratch),
+                     1);
     assert_non_null(strstr(cli_err, "no model has the clip 'none', expected one of "));
 }
 
@@ -460,12 +478,14 @@ static void other_anti_aliasing_takes_a_past_out_of_a_rung(void **state) {
     char name[256], with[512], error[ERROR_SIZE];
     write_ladder("past.json", "0.5", ", \"temporal\": \"on\"");
     snprintf(with, sizeof with, "--ladder %s/past.json --rung 1 --aa fxaa", scratch);
-    const char *const ways[] = {with, "--setting scale=0.5+march_steps=64+shadow_refresh=1-2-4-8+aa=fxaa+sharpness=0"};
+    const char *const ways[] = {
+        with, "--setting scale=0.5+march_steps=64+shadow_refresh=1-2-4-8+aa=fxaa+sharpness=0"};
     struct masu_image images[2];
     for (int k = 0; k < 2; k++) {
         snprintf(name, sizeof name, "%s/aa%d.png", scratch, k);
-        assert_int_equal(
-            cli_run("render %s -o %s --size 64x48 --frames 24 --time-step 0.05 %s", scene_path("test_live"), name, ways[k]), 0);
+        assert_int_equal(cli_run("render %s -o %s --size 64x48 --frames 24 --time-step 0.05 %s",
+                                 scene_path("test_live"), name, ways[k]),
+                         0);
         assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
     }
     assert_memory_equal(images[0].rgba, images[1].rgba, 4 * 64 * 48);
@@ -510,9 +530,9 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     for (uint32_t i = 0; i < IW * IH; i++) in[4 * i + 3] = (uint8_t)(i % IW * 6 + 6);
     snprintf(from, sizeof from, "%s/in.png", scratch);
     assert_ok(masu_image_save_png(from, in, IW, IH, 0, error, sizeof error));
-    assert_int_equal(
-        cli_run("upscale %s %s/up.png --size %ux%u --no-rcas", from, scratch, (unsigned)OW, (unsigned)OH),
-        0);
+    assert_int_equal(cli_run("upscale %s %s/up.png --size %ux%u --no-rcas", from, scratch,
+                             (unsigned)OW, (unsigned)OH),
+                     0);
     snprintf(from, sizeof from, "%s/up.png", scratch);
     assert_ok(masu_image_load_png(from, &image, error, sizeof error));
     masu_ref_from_rgba8(in, IW, IH, 0, rgb);
@@ -529,8 +549,9 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     static uint8_t sharp[2][OW * OH * 4];
     static const char *const stops[] = {"0", "2"};
     for (size_t i = 0; i < 2; i++) {
-        assert_int_equal(
-            cli_run("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", scratch, scratch, stops[i]), 0);
+        assert_int_equal(cli_run("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", scratch,
+                                 scratch, stops[i]),
+                         0);
         assert_ok(masu_image_load_png(from, &image, error, sizeof error));
         memcpy(sharp[i], image.rgba, sizeof sharp[i]);
         masu_image_free(&image);
@@ -563,7 +584,8 @@ static void upscaled_sprites_have_no_fringe(void **state) {
     int seen = 0, worst = 0;
     for (int i = 0; i < 48 * 48; i++) {
         if (image.rgba[4 * i + 3] < 8) continue;
-        worst = (int)fmax(worst, fmax(abs(image.rgba[4 * i] - 200), abs(image.rgba[4 * i + 1] - 120)));
+        worst =
+            (int)fmax(worst, fmax(abs(image.rgba[4 * i] - 200), abs(image.rgba[4 * i + 1] - 120)));
         seen++;
     }
     assert_true(seen > 600);

@@ -72,12 +72,14 @@ static void cases_are_judged_by_golden_files(void **state) {
     write_suite(
         "{\"name\": \"good\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.exr\","
         " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08}},"
-        "{\"name\": \"image\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.png\", \"pixels\": 0}}");
+        "{\"name\": \"image\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.png\", "
+        "\"pixels\": 0}}");
     if (planted("")) fail_msg("%s%s", cli_out, cli_err);
     write_suite(
         "{\"name\": \"dim\", \"error\": {\"against\": \"reference\", \"golden\": \"dim.pfm\","
         " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08, \"patch_z2\": 2}},"
-        "{\"name\": \"none\", \"error\": {\"against\": \"reference\", \"golden\": \"none.ref\", \"mean_off\": 1}}");
+        "{\"name\": \"none\", \"error\": {\"against\": \"reference\", \"golden\": \"none.ref\", "
+        "\"mean_off\": 1}}");
     assert_int_equal(planted(""), 1);
     cli_said("mean_off is 0.");
     cli_said("patch_p95 is 0.");
@@ -92,7 +94,8 @@ static void a_run_that_is_killed_leaves_complete_reports(void **state) {
     write_suite(
         "{\"name\": \"short\"}, {\"name\": \"long\", \"frames\": 100000}, {\"name\": \"never\"}");
     int code = shell(
-        "timeout -s KILL 3 %s/bin/masu conform --scenes %s/scenes --suite %s/suite.json --junit %s/k.xml "
+        "timeout -s KILL 3 %s/bin/masu conform --scenes %s/scenes --suite %s/suite.json --junit "
+        "%s/k.xml "
         "--csv %s/k.csv --table %s/k.md --images %s/new/images > /dev/null 2>&1; test $? = 137",
         build_dir(), made_dir(), scratch, scratch, scratch, scratch, scratch);
     assert_int_equal(code, 0);
@@ -114,7 +117,9 @@ static void a_run_that_is_killed_leaves_complete_reports(void **state) {
 static void a_part_of_the_extreme_suite_passes(void **state) {
     (void)state;
     const char *driver = getenv("MASU_TEST_DRIVER");
-    int first = !driver || !strcmp(driver, "system"), part = first ? 0 : !strcmp(driver, "lavapipe-25") ? 6 : 11;
+    int first = !driver || !strcmp(driver, "system"), part = first                            ? 0
+                                                             : !strcmp(driver, "lavapipe-25") ? 6
+                                                                                              : 11;
     int code = conform("--suite suites/extreme.json --fraction %d,%d", part, first ? 15 : 45);
     if (code) fail_msg("exit code %d\n%s%s", code, cli_out, cli_err);
     cli_said("0 resource errors, 0 failed");
@@ -126,34 +131,42 @@ static void extreme_cases_judge(void **state) {
     (void)state;
     if (!whole_run()) return; /* how the program judges results, on any driver */
     char table[8192];
-    write_suite("{\"name\": \"here\"},"
-                "{\"name\": \"same\", \"extreme\": {\"cut\": true}, \"error\": {\"against\": \"here\", \"pixels\": 0}},"
-                "{\"name\": \"away\", \"input\": \"a|b\", \"extreme\": {\"camera\": {\"position\": [0, 0, 5]}},"
-                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
-                "{\"name\": \"dark\", \"extreme\": {\"light\": {\"sun\": [0, -1, 0]}},"
-                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
-                "{\"name\": \"gone\", \"extreme\": {\"transform\": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]},"
-                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
-                "{\"name\": \"none\", \"extreme\": {\"instance\": 9999, \"transform\": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]}},"
-                "{\"name\": \"glow\", \"extreme\": {\"material\": {\"emissive\": 5}},"
-                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
-                "{\"name\": \"rungs\", \"ladder\": [{}, {\"scale\": 0.2}], \"frames\": 2, \"extreme\": {\"cycle\": true},"
-                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
-                "{\"name\": \"field\", \"scene\": \"extreme/figures\", \"rung\": {\"march_steps\": 3},"
-                " \"extreme\": {\"camera\": {\"position\": [1.5, 2.2, 6], \"forward\": [-0.25, -0.28, -1], \"near\": 0.05}},"
-                " \"field\": {\"hitmiss_pct\": 0.1}},"
-                "{\"name\": \"truth\", \"extreme\": {\"camera\": {}}, \"field\": {\"hitmiss_pct\": 0.1}}");
+    write_suite(
+        "{\"name\": \"here\"},"
+        "{\"name\": \"same\", \"extreme\": {\"cut\": true}, \"error\": {\"against\": \"here\", "
+        "\"pixels\": 0}},"
+        "{\"name\": \"away\", \"input\": \"a|b\", \"extreme\": {\"camera\": {\"position\": [0, 0, "
+        "5]}},"
+        " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+        "{\"name\": \"dark\", \"extreme\": {\"light\": {\"sun\": [0, -1, 0]}},"
+        " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+        "{\"name\": \"gone\", \"extreme\": {\"transform\": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]},"
+        " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+        "{\"name\": \"none\", \"extreme\": {\"instance\": 9999, \"transform\": [0, 0, 0, 0, 0, 0, "
+        "0, 0, 0, 0, 0, 0]}},"
+        "{\"name\": \"glow\", \"extreme\": {\"material\": {\"emissive\": 5}},"
+        " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+        "{\"name\": \"rungs\", \"ladder\": [{}, {\"scale\": 0.2}], \"frames\": 2, \"extreme\": "
+        "{\"cycle\": true},"
+        " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+        "{\"name\": \"field\", \"scene\": \"extreme/figures\", \"rung\": {\"march_steps\": 3},"
+        " \"extreme\": {\"camera\": {\"position\": [1.5, 2.2, 6], \"forward\": [-0.25, -0.28, -1], "
+        "\"near\": 0.05}},"
+        " \"field\": {\"hitmiss_pct\": 0.1}},"
+        "{\"name\": \"truth\", \"extreme\": {\"camera\": {}}, \"field\": {\"hitmiss_pct\": 0.1}}");
     char more[200];
     snprintf(more, sizeof more, "--table %s/t.md", scratch);
     assert_int_equal(planted(more), 1);
-    static const char *const failing[] = {"away", "dark", "gone", "none", "glow", "rungs", "field", "truth"};
+    static const char *const failing[] = {"away", "dark",  "gone",  "none",
+                                          "glow", "rungs", "field", "truth"};
     for (size_t i = 0; i < sizeof failing / sizeof *failing; i++) {
         char line[64];
         snprintf(line, sizeof line, "fail             %s ", failing[i]);
         cli_said(line);
     }
     cli_said("pass             same ");
-    cli_said("10 cases: 2 passed, 0 quality warnings, 0 not supported, 0 resource errors, 8 failed");
+    cli_said(
+        "10 cases: 2 passed, 0 quality warnings, 0 not supported, 0 resource errors, 8 failed");
     take_text("t.md", table, sizeof table);
     assert_non_null(strstr(table, "| fail | away 32x24 | a\\|b | "));
     assert_non_null(strstr(table, "pixels = 0, against here | "));
@@ -164,21 +177,27 @@ static void extreme_frames_are_told(void **state) {
     (void)state;
     if (!whole_run()) return; /* how the program judges results, on any driver */
     char cases[4096];
-    const char *here = "\"camera\": {\"position\": [1.2, 0.9, 3.2], \"forward\": [-0.3, -0.25, -1]}";
-    const char *there = "{\"position\": [0, 0, 4]}", *t = "\"rung\": {\"temporal\": \"on\"}, \"frames\": 6";
+    const char *here =
+        "\"camera\": {\"position\": [1.2, 0.9, 3.2], \"forward\": [-0.3, -0.25, -1]}";
+    const char *there = "{\"position\": [0, 0, 4]}",
+               *t = "\"rung\": {\"temporal\": \"on\"}, \"frames\": 6";
     snprintf(cases, sizeof cases,
              "{\"name\": \"odd\", \"frames\": 2, \"extreme\": {%s, \"other_camera\": %s},"
              " \"error\": {\"against\": \"there\", \"pixels\": 0}},"
              "{\"name\": \"there\", \"frames\": 2, \"extreme\": {\"camera\": %s}},"
-             "{\"name\": \"settled\", \"frames\": 2, \"extreme\": {%s, \"other_camera\": %s, \"settle\": 1},"
+             "{\"name\": \"settled\", \"frames\": 2, \"extreme\": {%s, \"other_camera\": %s, "
+             "\"settle\": 1},"
              " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
              "{\"name\": \"here\", \"frames\": 2, \"extreme\": {%s}},"
              "{\"name\": \"gathered\", %s}, {\"name\": \"cut\", %s, \"extreme\": {\"cut\": true},"
              " \"error\": {\"against\": \"gathered\", \"pixels\": 0}},"
-             "{\"name\": \"slow\", \"scene\": \"test_exposure\", \"frames\": 2, \"extreme\": {\"step\": 0, %s,"
+             "{\"name\": \"slow\", \"scene\": \"test_exposure\", \"frames\": 2, \"extreme\": "
+             "{\"step\": 0, %s,"
              " \"other_camera\": {\"position\": [0, 0, 1.5]}}},"
-             "{\"name\": \"fast\", \"scene\": \"test_exposure\", \"frames\": 2, \"extreme\": {\"step\": 10, %s,"
-             " \"other_camera\": {\"position\": [0, 0, 1.5]}}, \"error\": {\"against\": \"slow\", \"steps\": 3}}",
+             "{\"name\": \"fast\", \"scene\": \"test_exposure\", \"frames\": 2, \"extreme\": "
+             "{\"step\": 10, %s,"
+             " \"other_camera\": {\"position\": [0, 0, 1.5]}}, \"error\": {\"against\": \"slow\", "
+             "\"steps\": 3}}",
              here, there, there, here, there, here, t, t, here, here);
     write_suite(cases);
     assert_int_equal(planted(""), 1);

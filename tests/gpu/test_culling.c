@@ -138,8 +138,9 @@ static void velocities_are_the_same_without_culling(void **state) {
             move_instance(&s[i], "ball3", (float)c.position[0] + 4.0f * c.forward[0],
                  1.0f + 0.1f * (float)frame, (float)c.position[2] + 4.0f * c.forward[2], 1.0f);
             draw(&s[i], &f, &commands, NULL);
-            assert_int_equal(masu_readback(s[i].m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL),
-                             MASU_OK);
+            assert_int_equal(
+                masu_readback(s[i].m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL),
+                MASU_OK);
             for (uint32_t y = 0; y < H; y++) {
                 memcpy(velocity[i] + (size_t)y * W * 8,
                        (const uint8_t *)image.pixels + y * image.row_bytes, W * 8);
@@ -161,9 +162,9 @@ static void bake_shadows(void) {
               "tests/scenes/test_town.json > %s/town.json",
               scratch),
         0);
-    assert_int_equal(
-        shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet", build_dir(), scratch, scratch),
-        0);
+    assert_int_equal(shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet", build_dir(),
+                           scratch, scratch),
+                     0);
 }
 
 /* Each culling mode has its own renderer, so the content of a slow cascade is from that mode only.
@@ -195,13 +196,16 @@ static void compare_shadows(uint32_t frames, const uint32_t refresh[3], uint64_t
         for (uint32_t way = WAYS; way-- > 0;) {
             masu_frame_desc f = {.camera = &c, .light = &light, .cut = frame % 60 == 59};
             masu_commands commands;
-            move_instance(&s[way], "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
+            move_instance(&s[way], "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f),
+                          1.0f);
             move_instance(&s[way], "late1", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, 2.0f);
             draw(&s[way], &f, &commands, pixels[way]);
             masu_stats_info stats = stats_of(&s[way], commands.slot);
             uint32_t one = way != NEITHER;
-            memcpy(map[one], read_image(&s[way], commands.slot, MASU_READBACK_SHADOW_MAP), sizeof map[0]);
-            memcpy(lit[one], read_image(&s[way], commands.slot, MASU_READBACK_OCCLUSION), sizeof lit[0]);
+            memcpy(map[one], read_image(&s[way], commands.slot, MASU_READBACK_SHADOW_MAP),
+                   sizeof map[0]);
+            memcpy(lit[one], read_image(&s[way], commands.slot, MASU_READBACK_OCCLUSION),
+                   sizeof lit[0]);
             assert_int_equal(stats.view_count, 4);
             uint64_t all = 0;
             for (uint32_t v = 1; v < 4; v++) {

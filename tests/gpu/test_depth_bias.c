@@ -20,16 +20,21 @@ static uint16_t hdr[W * H * 4];
 /* A floor, a decal of another triangulation in its plane, and a lid above its middle. */
 static void bake(double size, const char *decal) {
     char json[4096];
-    snprintf(json, sizeof json,
-             "{\"sun\": {\"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5], \"ambient_occlusion\": false, "
-             "\"models\": ["
-             "{\"name\": \"floor\", \"mesh\": {\"plane\": {\"size_x\": %g, \"size_z\": %g}}, \"rotate\": [7, 31, 3], "
-             "\"material\": {\"base_color\": [1, 0, 0], \"unlit\": true}},"
-             "{\"name\": \"decal\", \"moving\": true, \"mesh\": {\"plane\": {\"size_x\": %g, \"size_z\": %g}}, "
-             "\"rotate\": [7, 31, 3], \"material\": {\"base_color\": [0, 0.5, 0], \"unlit\": true %s}},"
-             "{\"name\": \"lid\", \"mesh\": {\"plane\": {\"size_x\": %g, \"size_z\": %g}}, \"rotate\": [7, 31, 3], "
-             "\"translate\": [0, %g, 0], \"material\": {\"base_color\": [0, 0, 0.5], \"unlit\": true}}]}",
-             8 * size, 8 * size, 0.9 * size, 0.7 * size, decal, 0.2 * size, 0.2 * size, 0.02 * size);
+    snprintf(
+        json, sizeof json,
+        "{\"sun\": {\"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5], \"ambient_occlusion\": false, "
+        "\"models\": ["
+        "{\"name\": \"floor\", \"mesh\": {\"plane\": {\"size_x\": %g, \"size_z\": %g}}, "
+        "\"rotate\": [7, 31, 3], "
+        "\"material\": {\"base_color\": [1, 0, 0], \"unlit\": true}},"
+        "{\"name\": \"decal\", \"moving\": true, \"mesh\": {\"plane\": {\"size_x\": %g, "
+        "\"size_z\": %g}}, "
+        "\"rotate\": [7, 31, 3], \"material\": {\"base_color\": [0, 0.5, 0], \"unlit\": true %s}},"
+        "{\"name\": \"lid\", \"mesh\": {\"plane\": {\"size_x\": %g, \"size_z\": %g}}, \"rotate\": "
+        "[7, 31, 3], "
+        "\"translate\": [0, %g, 0], \"material\": {\"base_color\": [0, 0, 0.5], \"unlit\": "
+        "true}}]}",
+        8 * size, 8 * size, 0.9 * size, 0.7 * size, decal, 0.2 * size, 0.2 * size, 0.02 * size);
     bake_scene("decal", json);
 }
 
@@ -98,11 +103,13 @@ static uint32_t picked_decal(double distance) {
     masu_camera camera = camera_at(distance);
     uint32_t hits = 0;
     masu_node_state node;
-    assert_int_equal(masu_model_node_get(s.m, masu_model_find(s.m, "decal"), 0, &node, &failure), MASU_OK);
+    assert_int_equal(masu_model_node_get(s.m, masu_model_find(s.m, "decal"), 0, &node, &failure),
+                     MASU_OK);
     for (uint32_t i = 0; i < 8; i++) {
         masu_commands commands;
         masu_pick_info info;
-        masu_frame_desc frame = {.camera = &camera, .pick = 1, .pick_x = W / 2 - 36 + i, .pick_y = H / 2};
+        masu_frame_desc frame = {
+            .camera = &camera, .pick = 1, .pick_x = W / 2 - 36 + i, .pick_y = H / 2};
         draw(&s, &frame, &commands, NULL);
         assert_int_equal(masu_pick(s.m, commands.slot, &info, &failure), MASU_OK);
         hits += info.instance.id == node.instance.id;
@@ -119,14 +126,16 @@ static void decals_are_in_front_at_every_distance(void **state) {
         for (size_t k = 0; k < 2; k++) {
             for (int biased = 0; biased < 2; biased++) {
                 char decal[128];
-                snprintf(decal, sizeof decal, "%s%s", kinds[blended], biased ? ", \"depth_bias\": 0.0005" : "");
+                snprintf(decal, sizeof decal, "%s%s", kinds[blended],
+                         biased ? ", \"depth_bias\": 0.0005" : "");
                 bake(distances[k], decal);
                 shares is = look(distances[k]);
                 uint32_t picks = biased ? picked_decal(distances[k]) : 0;
                 shares want = expected(distances[k]);
-                print_message("%s%s at %g m: %g of %g pixels of the decal, %g of %g of the lid, picked %u of 8\n",
-                              blended ? "transparent" : "opaque", biased ? ", biased" : "", distances[k], is.decal,
-                              want.decal, is.lid, want.lid, picks);
+                print_message("%s%s at %g m: %g of %g pixels of the decal, %g of %g of the lid, "
+                              "picked %u of 8\n",
+                              blended ? "transparent" : "opaque", biased ? ", biased" : "",
+                              distances[k], is.decal, want.decal, is.lid, want.lid, picks);
                 assert_true(want.decal > W * H / 10);
                 if (biased) {
                     assert_true(fabs(is.decal - want.decal) <= 0.01 * want.decal + 2);
@@ -146,17 +155,21 @@ static void unlit_materials_show_their_color(void **state) {
     (void)state;
     static uint8_t rgba[8 * 8 * 4];
     char error[256];
-    masu_camera camera = {.position = {0, 4, 0}, .forward = {0, -1, 0}, .up = {0, 0, -1}, .fov_y = 0.5f};
+    masu_camera camera = {
+        .position = {0, 4, 0}, .forward = {0, -1, 0}, .up = {0, 0, -1}, .fov_y = 0.5f};
     masu_frame_desc frame = {.camera = &camera};
     masu_commands commands;
     for (size_t i = 0; i < sizeof rgba; i++) rgba[i] = 255;
     assert_ok(masu_image_save_png(in_scratch("white.png"), rgba, 8, 8, 0, error, sizeof error));
-    bake_scene("unlit", "{\"sun\": {\"intensity\": 3}, \"ambient\": [1, 1, 1], \"models\": ["
-                        "{\"mesh\": {\"box\": {\"size\": [1, 1, 8]}}, \"translate\": [-1, 0, 0], \"material\": "
-                        "{\"base_color\": [0.25, 0.5, 0.125], \"metallic\": 1, \"coat\": 1, \"roughness\": 0, "
-                        "\"unlit\": true}},"
-                        "{\"mesh\": {\"box\": {\"size\": [1, 1, 8]}}, \"translate\": [1, 0, 0], \"material\": "
-                        "{\"base_color\": [0.25, 0.5, 0.125], \"unlit\": true, \"base_color_map\": \"white.png\"}}]}");
+    bake_scene(
+        "unlit",
+        "{\"sun\": {\"intensity\": 3}, \"ambient\": [1, 1, 1], \"models\": ["
+        "{\"mesh\": {\"box\": {\"size\": [1, 1, 8]}}, \"translate\": [-1, 0, 0], \"material\": "
+        "{\"base_color\": [0.25, 0.5, 0.125], \"metallic\": 1, \"coat\": 1, \"roughness\": 0, "
+        "\"unlit\": true}},"
+        "{\"mesh\": {\"box\": {\"size\": [1, 1, 8]}}, \"translate\": [1, 0, 0], \"material\": "
+        "{\"base_color\": [0.25, 0.5, 0.125], \"unlit\": true, \"base_color_map\": "
+        "\"white.png\"}}]}");
     masu_session_desc d = test_desc(NULL, W, H);
     d.scene_path = baked_scene("unlit");
     d.desc.readback = MASU_READBACK_HDR;
@@ -167,7 +180,8 @@ static void unlit_materials_show_their_color(void **state) {
     for (uint32_t side = 0; side < 2; side++) {
         const uint16_t *at = is + 4 * (H / 2 * W + (side ? W * 3 / 4 : W / 4));
         print_message("unlit: %g %g %g\n", half_float(at[0]), half_float(at[1]), half_float(at[2]));
-        assert_true(half_float(at[0]) == 0.25 && half_float(at[1]) == 0.5 && half_float(at[2]) == 0.125);
+        assert_true(half_float(at[0]) == 0.25 && half_float(at[1]) == 0.5 &&
+                    half_float(at[2]) == 0.125);
     }
     close_session(&s);
 }

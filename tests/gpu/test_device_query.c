@@ -187,7 +187,8 @@ static void what_is_required_and_missing_is_named(void **state) {
                    "does not offer shaderFloat16");
     d.half_floats = MASU_AUTO, wrap_reset();
     wrap.max_storage_buffers = 1;
-    expect_missing(&d, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", 1, "the device has 1");
+    expect_missing(&d, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", 1,
+                   "the device has 1");
     wrap_reset();
     assert_int_equal(masu_device_query(&d, NULL, NULL), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_device_query(NULL, &(masu_device_info){0}, NULL), MASU_ERROR_ARGUMENT);

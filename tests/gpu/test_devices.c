@@ -47,7 +47,8 @@ static uint32_t warnings; /* about maxPerStageDescriptorStorageBuffers */
 
 static void count_warning(void *user, masu_log_level level, const char *text) {
     (void)user;
-    warnings += level == MASU_LOG_WARNING && strstr(text, "maxPerStageDescriptorStorageBuffers is ") != NULL;
+    warnings += level == MASU_LOG_WARNING &&
+                strstr(text, "maxPerStageDescriptorStorageBuffers is ") != NULL;
 }
 
 static char cells[ROWS][CLASSES][128];
@@ -71,7 +72,8 @@ static int emits_apart(const masu_plan_info *plan) {
 static uint32_t lacks(const masu_plan_info *is, const masu_plan_info *whole) {
     uint32_t bits = 0;
     for (uint32_t f = 0; f < FEATURES; f++)
-        bits |= (uint32_t)(is_active(whole, features[f].pass) && !is_active(is, features[f].pass)) << f;
+        bits |= (uint32_t)(is_active(whole, features[f].pass) && !is_active(is, features[f].pass))
+                << f;
     return bits | (uint32_t)(emits_apart(whole) && !emits_apart(is)) << EMISSION;
 }
 
@@ -87,11 +89,13 @@ static void turn_off(masu_desc *d, uint32_t bits) {
 static void assert_same_plan(const masu_plan_info *a, const masu_plan_info *b) {
     for (uint32_t p = 0; p < a->pass_count; p++) {
         if (a->passes[p].active != b->passes[p].active)
-            fail_msg("pass %s: %u, %u", a->passes[p].name, a->passes[p].active, b->passes[p].active);
+            fail_msg("pass %s: %u, %u", a->passes[p].name, a->passes[p].active,
+                     b->passes[p].active);
     }
     for (uint32_t i = 0; i < a->image_count; i++) {
         const masu_plan_image *x = &a->images[i], *y = &b->images[i];
-        if (x->used != y->used || (x->used && (x->format != y->format || x->width != y->width || x->height != y->height)))
+        if (x->used != y->used ||
+            (x->used && (x->format != y->format || x->width != y->width || x->height != y->height)))
             fail_msg("image %s differs", x->name);
     }
 }
@@ -147,7 +151,8 @@ static void describe(char *cell, size_t size, uint32_t lack) {
         if (!(lack >> f & 1)) continue;
         n += (size_t)snprintf(cell + n, size - n, "%s%s", n ? ", " : "no ", features[f].name);
     }
-    if (lack >> EMISSION & 1) snprintf(cell + n, size - n, "%semission shares albedo", n ? ", " : "");
+    if (lack >> EMISSION & 1)
+        snprintf(cell + n, size - n, "%semission shares albedo", n ? ", " : "");
 }
 
 static void run_class(uint32_t c) {
@@ -186,8 +191,10 @@ static void run_class(uint32_t c) {
         assert_same_plan(&plan, &expected);
         for (uint32_t k = 0; k < plan.image_count; k++) {
             if (plan.images[k].used)
-                assert_in_range(plan.images[k].width > plan.images[k].height ? plan.images[k].width : plan.images[k].height, 1,
-                                row->limits[0]);
+                assert_in_range(plan.images[k].width > plan.images[k].height
+                                    ? plan.images[k].width
+                                    : plan.images[k].height,
+                                1, row->limits[0]);
         }
         /* Of devices with the same plan, the one with the lowest limits is last in the table. */
         int last = !masu_device_row_at(i + 1);
@@ -309,11 +316,13 @@ static void the_page_has_the_tables(void **state) {
         memset(&p.limits, 0xFF, sizeof p.limits);
         masu_device_row_limit(row, &p);
         const VkPhysicalDeviceLimits *l = &p.limits;
-        snprintf(line, sizeof line, "| %s | %s | 1.%u | %u | %u | %u | %u | %u | %u | %u | %s | %s |", row->title, row->source,
-                 row->minor, l->maxPerStageDescriptorStorageBuffers, l->maxPerStageDescriptorStorageImages,
-                 l->maxPerStageDescriptorSampledImages, l->maxComputeWorkGroupInvocations,
-                 l->maxComputeSharedMemorySize / 1024, l->maxImageDimension2D, l->maxColorAttachments,
-                 row->compressed ? "yes" : "no", row->fragment_stores ? "yes" : "no");
+        snprintf(line, sizeof line,
+                 "| %s | %s | 1.%u | %u | %u | %u | %u | %u | %u | %u | %s | %s |", row->title,
+                 row->source, row->minor, l->maxPerStageDescriptorStorageBuffers,
+                 l->maxPerStageDescriptorStorageImages, l->maxPerStageDescriptorSampledImages,
+                 l->maxComputeWorkGroupInvocations, l->maxComputeSharedMemorySize / 1024,
+                 l->maxImageDimension2D, l->maxColorAttachments, row->compressed ? "yes" : "no",
+                 row->fragment_stores ? "yes" : "no");
         expect_line(line);
     }
     assert_true(n >= 10);

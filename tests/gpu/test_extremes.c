@@ -23,7 +23,8 @@ static const float *draw_finite(masu_session *s, const masu_frame_desc *frame,
     draw(s, frame, &commands, NULL);
     assert_int_equal(masu_stats(s->m, commands.slot, stats, NULL), MASU_OK);
     assert_int_equal(stats->replaced, 0);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &depth, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &depth, NULL),
+                     MASU_OK);
     assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_HDR, &hdr, NULL), MASU_OK);
     for (uint32_t i = 0; i < W * H; i++) {
         float d = ((const float *)depth.pixels)[i];

@@ -232,7 +232,9 @@ static void storage_buffers_are_counted_as_they_are_bound(void **state) {
             own.desc.reserve.particles = 1;
             wrap.max_storage_buffers = 4;
             assert_int_equal(masu_plan(&own.desc, &plan, &detail), MASU_OK);
-            assert_true(pass_of(&plan, "light_tiles")->active && pass_of(&plan, "transparents")->active && pass_of(&plan, "particles")->active);
+            assert_true(pass_of(&plan, "light_tiles")->active &&
+                        pass_of(&plan, "transparents")->active &&
+                        pass_of(&plan, "particles")->active);
         }
         own.desc.rungs[0] = (masu_rung){.specular = MASU_OFF};
         wrap.max_storage_buffers = 1;
@@ -250,7 +252,8 @@ static VkFormat format_of(const char *image) {
     masu_detail detail;
     assert_int_equal(masu_plan(&s.desc, &plan, &detail), MASU_OK);
     for (uint32_t i = 0; i < plan.image_count; i++)
-        if (!strcmp(plan.images[i].name, image)) return plan.images[i].used ? plan.images[i].format : VK_FORMAT_UNDEFINED;
+        if (!strcmp(plan.images[i].name, image))
+            return plan.images[i].used ? plan.images[i].format : VK_FORMAT_UNDEFINED;
     return VK_FORMAT_UNDEFINED;
 }
 
@@ -337,15 +340,19 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     assert_int_equal(masu_stats(m, commands.slot, &stats, &failure), MASU_OK);
     assert_int_equal(stats.replaced, 0);
     float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    assert_int_equal(masu_instance_set_transform(m, (masu_instance){0}, rows, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(m, (masu_instance){0}, rows, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_instance_set_transform(m, (masu_instance){99}, rows, &failure),
                      MASU_ERROR_ARGUMENT);
     rows[5] = NAN;
-    assert_int_equal(masu_instance_set_transform(m, masu_instance_at(m, 0), rows, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(m, masu_instance_at(m, 0), rows, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_instance_find(m, "no such name").id, 0);
     masu_readback_image image;
-    assert_int_equal(masu_readback(m, 0, (masu_readback_bits)3, &image, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_readback(m, 9, MASU_READBACK_DEPTH, &image, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_readback(m, 0, (masu_readback_bits)3, &image, &failure),
+                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_readback(m, 9, MASU_READBACK_DEPTH, &image, &failure),
+                     MASU_ERROR_ARGUMENT);
     masu_destroy(m);
     assert_int_equal(wrap.live, 0);
 }
@@ -494,14 +501,16 @@ static void a_wait_that_times_out_fails_cleanly(void **state) {
     masu_headless was = s.host;
     s.host.wait_ns = 0;
     for (uint32_t i = 0; i < 3; i++) {
-        assert_int_equal(masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, &failure), MASU_OK);
+        assert_int_equal(masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, &failure),
+                         MASU_OK);
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
     }
     s.host.properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     int finished = 1;
     for (uint32_t i = 0; i < 100 && finished;
          i++) { /* it may be faster than 120 checks of a fence */
-        assert_int_equal(masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, &failure), MASU_OK);
+        assert_int_equal(masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, &failure),
+                         MASU_OK);
         finished = masu_headless_run(&s.host, commands.buffer, error, sizeof error);
     }
     assert_false(finished);
@@ -563,13 +572,16 @@ static void extreme_transforms_stay_finite(void **state) {
         masu_frame_desc f = {MASU_FRAME_DESC};
         masu_stats_info stats;
         masu_readback_image depth, hdr;
-        assert_int_equal(masu_instance_set_transform(m, masu_instance_at(m, 0), rows, &failure), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(m, masu_instance_at(m, 0), rows, &failure),
+                         MASU_OK);
         assert_int_equal(masu_frame(m, &f, &commands, &failure), MASU_OK);
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
         assert_int_equal(masu_stats(m, commands.slot, &stats, &failure), MASU_OK);
         assert_int_equal(stats.replaced, 0);
-        assert_int_equal(masu_readback(m, commands.slot, MASU_READBACK_DEPTH, &depth, &failure), MASU_OK);
-        assert_int_equal(masu_readback(m, commands.slot, MASU_READBACK_HDR, &hdr, &failure), MASU_OK);
+        assert_int_equal(masu_readback(m, commands.slot, MASU_READBACK_DEPTH, &depth, &failure),
+                         MASU_OK);
+        assert_int_equal(masu_readback(m, commands.slot, MASU_READBACK_HDR, &hdr, &failure),
+                         MASU_OK);
         for (uint32_t k = 0; k < W * H; k++) {
             float v = ((const float *)depth.pixels)[k];
             assert_true(v >= 0.0f && v <= 1.0f);

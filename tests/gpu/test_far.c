@@ -217,9 +217,8 @@ static void a_large_ball_is_a_smooth_ground(void **state) {
     static float depths[W * H];
     const masu_camera c = {
         .position = {0, 1.7, 0}, .forward = {0, -0.2f, -1}, .fov_y = 0.9f, .near_distance = 0.1f};
-    write_text(
-        "ball.sdf",
-        "material m { albedo 0.5; roughness 1 } part ground : m = translate((0, -3000, 0), sphere(3000));\n");
+    write_text("ball.sdf", "material m { albedo 0.5; roughness 1 } part ground : m = translate((0, "
+                           "-3000, 0), sphere(3000));\n");
     for (int anchored = 0; anchored < 2; anchored++) {
         char json[256];
         masu_session s;
@@ -284,12 +283,16 @@ enum { MOVERS = sizeof movers / sizeof *movers };
 
 static const char *const polygons =
     "{\"camera\": {\"near\": 0.1}, \"ambient\": [0.2, 0.2, 0.25], \"ambient_occlusion\": false,"
-    "\"sun\": {\"azimuth\": 40, \"elevation\": 50, \"shadows\": false}, \"reflections\": {}, \"models\": ["
-    "{\"name\": \"ground\", \"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, \"moving\": true,"
+    "\"sun\": {\"azimuth\": 40, \"elevation\": 50, \"shadows\": false}, \"reflections\": {}, "
+    "\"models\": ["
+    "{\"name\": \"ground\", \"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, \"moving\": "
+    "true,"
     " \"material\": {\"base_color\": [0.5, 0.5, 0.5], \"roughness\": 0.1, \"metallic\": 0.9}},"
-    "{\"name\": \"block\", \"mesh\": {\"box\": {\"size\": [1, 1, 1]}}, \"rotate_y\": 30, \"moving\": true,"
+    "{\"name\": \"block\", \"mesh\": {\"box\": {\"size\": [1, 1, 1]}}, \"rotate_y\": 30, "
+    "\"moving\": true,"
     " \"material\": {\"base_color\": [0.8, 0.2, 0.2]}},"
-    "{\"name\": \"ball\", \"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 3}}, \"moving\": true,"
+    "{\"name\": \"ball\", \"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 3}}, "
+    "\"moving\": true,"
     " \"material\": {\"base_color\": [0.2, 0.8, 0.2]}},"
     "{\"name\": \"pane\", \"mesh\": {\"box\": {\"size\": [1, 1, 0.05]}}, \"moving\": true,"
     " \"material\": {\"base_color\": [0.2, 0.3, 0.9], \"opacity\": 0.5}}],"
@@ -303,11 +306,14 @@ static void place_all(masu_session *s, const double offset[3], int number, int d
         double at[3];
         for (int k = 0; k < 3; k++) at[k] = offset[k] + movers[i].at[k];
         at[0] += i == 1 ? 0.03 * number : 0;
-        const float rows[12] = {1, 0, 0, (float)at[0], 0, 1, 0, (float)at[1], 0, 0, 1, (float)at[2]};
+        const float rows[12] = {1, 0, 0, (float)at[0], 0, 1, 0, (float)at[1],
+                                0, 0, 1, (float)at[2]};
         if (!doubles)
             assert_int_equal(masu_model_set_transform(s->m, model, rows, &failure), MASU_OK);
         else if (i == 2)
-            assert_int_equal(masu_instance_set_position(s->m, masu_instance_find(s->m, "ball"), at, &failure), MASU_OK);
+            assert_int_equal(
+                masu_instance_set_position(s->m, masu_instance_find(s->m, "ball"), at, &failure),
+                MASU_OK);
         else
             assert_int_equal(masu_model_set_position(s->m, model, at, &failure), MASU_OK);
     }
@@ -332,8 +338,10 @@ static void take_polygons(const double offset[3], int doubles, placed out[2]) {
                          .fov_y = 0.9f,
                          .near_distance = 0.1f};
         const double at[3] = {offset[0] - 0.2, offset[1], offset[2] + 1.5};
-        masu_decal decal = {.rows = {0.5f, 0, 0, 0, 0, 0, 0.5f, 0, 0, -0.4f, 0, 0}, .color = {0.9f, 0.7f, 0.1f},
-                            .opacity = 1, .roughness = 0.8f};
+        masu_decal decal = {.rows = {0.5f, 0, 0, 0, 0, 0, 0.5f, 0, 0, -0.4f, 0, 0},
+                            .color = {0.9f, 0.7f, 0.1f},
+                            .opacity = 1,
+                            .roughness = 0.8f};
         for (int k = 0; k < 3; k++) {
             if (doubles)
                 decal.position[k] = at[k];
@@ -341,13 +349,16 @@ static void take_polygons(const double offset[3], int doubles, placed out[2]) {
                 decal.rows[4 * k + 3] = (float)at[k];
         }
         place_all(&s, offset, i, doubles);
-        draw(&s, &(masu_frame_desc){.camera = &c, .time_step = 0.02f, .decals = &decal, .decal_count = 1}, &commands,
-             out[i ? i - 1 : 0].color);
+        draw(&s,
+             &(masu_frame_desc){
+                 .camera = &c, .time_step = 0.02f, .decals = &decal, .decal_count = 1},
+             &commands, out[i ? i - 1 : 0].color);
         if (!i) continue;
         placed *p = &out[i - 1];
         view_depths(read_image(&s, commands.slot, MASU_READBACK_DEPTH), &c, p->depth, W * H);
         memcpy(p->albedo, read_image(&s, commands.slot, MASU_READBACK_ALBEDO), sizeof p->albedo);
-        memcpy(p->velocity, read_image(&s, commands.slot, MASU_READBACK_VELOCITY), sizeof p->velocity);
+        memcpy(p->velocity, read_image(&s, commands.slot, MASU_READBACK_VELOCITY),
+               sizeof p->velocity);
     }
     close_session(&s);
 }
@@ -372,17 +383,20 @@ static placed_difference compare_placed(const char *what) {
             d.steps += off > 1;
             d.worst = off > d.worst ? off : d.worst;
             d.velocity += hypot(half_float(a->velocity[4 * i]) - half_float(b->velocity[4 * i]),
-                                half_float(a->velocity[4 * i + 1]) - half_float(b->velocity[4 * i + 1])) > 0.01;
+                                half_float(a->velocity[4 * i + 1]) -
+                                    half_float(b->velocity[4 * i + 1])) > 0.01;
         }
     }
-    print_message("  polygons, %s: %u hits; %u pixels more than 1/255 off, at most %d; %u move otherwise\n", what,
-                  d.hits, d.steps, d.worst, d.velocity);
+    print_message(
+        "  polygons, %s: %u hits; %u pixels more than 1/255 off, at most %d; %u move otherwise\n",
+        what, d.hits, d.steps, d.worst, d.velocity);
     return d;
 }
 
 static void double_positions_look_as_at_the_origin(void **state) {
     (void)state;
-    const double origin[3] = {0, 0, 0}, away[3] = {10000032, 0, -10000000}, odd[3] = {10000032.375, 1000.5, -9999968.25};
+    const double origin[3] = {0, 0, 0}, away[3] = {10000032, 0, -10000000},
+                 odd[3] = {10000032.375, 1000.5, -9999968.25};
     take_polygons(origin, 0, near_by);
     take_polygons(origin, 1, far_out);
     placed_difference d = compare_placed("at the origin, by doubles");

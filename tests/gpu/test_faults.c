@@ -53,8 +53,8 @@ static int open_all(void **state) {
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
     open_session(&s, &d);
     open_session(&other, &e);
-    assert_ok(masu_headless_target_create(&s.host, W, H, VK_FORMAT_R8G8B8A8_UNORM, 1, &target, error,
-                                          sizeof error));
+    assert_ok(masu_headless_target_create(&s.host, W, H, VK_FORMAT_R8G8B8A8_UNORM, 1, &target,
+                                          error, sizeof error));
     const masu_scene *scenes[] = {&s.scene, &other.scene};
     for (int i = 0; i < 2; i++) {
         masu_memory need;
@@ -90,7 +90,8 @@ static masu_result frames(masu_renderer *m, uint32_t first, uint32_t count, bool
     char error[ERROR_SIZE];
     masu_commands commands;
     for (uint32_t i = first; i < first + count; i++) {
-        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = i % 2, .time = 0.1 * i, .time_step = 0.1f, .cut = i == 0};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = i % 2, .time = 0.1 * i, .time_step = 0.1f,
+                                 .cut = i == 0};
         masu_result r = masu_frame(m, &frame, &commands, NULL);
         if (r) return r;
         if (submitted) assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
@@ -180,7 +181,8 @@ static void any_call_of_a_life_may_fail(void **state) {
     memcpy(good, pixels, BYTES);
     printf("  calls that can fail:");
     for (int i = 0; i < STAGES; i++)
-        printf(" %s %llu%s", stage_names[i], (unsigned long long)calls_of[i], i < STAGES - 1 ? "," : "\n");
+        printf(" %s %llu%s", stage_names[i], (unsigned long long)calls_of[i],
+               i < STAGES - 1 ? "," : "\n");
     /* After masu_init no object is created: no call can fail. */
     assert_true(calls_of[LOAD] == 0 && calls_of[DRAW] == 0 && calls_of[LIVE] == 0);
     assert_true(calls_of[DRAW_AGAIN] == 0 && calls_of[SIZE] > 5 && calls_of[INIT] > 100);
@@ -257,7 +259,8 @@ static void a_byte_less_is_refused_at_each_stage(void **state) {
     assert_int_equal(masu_memory_query(&d, &need, &detail), MASU_OK);
     enum { GUARD = 64 };
     unsigned char *guarded = host_block(need.host_bytes + 2 * GUARD);
-    const uint64_t short_by[] = {1, 8, 64, need.host_bytes / 2, need.host_bytes - 1, need.host_bytes};
+    const uint64_t short_by[] = {
+        1, 8, 64, need.host_bytes / 2, need.host_bytes - 1, need.host_bytes};
     for (size_t i = 0; i < sizeof short_by / sizeof *short_by; i++) {
         memset(guarded, 0xC5, need.host_bytes + 2 * GUARD);
         m = (masu_renderer *)block;
@@ -277,14 +280,16 @@ static void a_byte_less_is_refused_at_each_stage(void **state) {
         assert_int_equal(guarded[k], 0xC5);
         assert_int_equal(guarded[GUARD + need.host_bytes + k], 0xC5);
     }
-    assert_int_equal(masu_init(&d, guarded + 1, need.host_bytes + 1, &m, &detail), MASU_ERROR_MEMORY);
+    assert_int_equal(masu_init(&d, guarded + 1, need.host_bytes + 1, &m, &detail),
+                     MASU_ERROR_MEMORY);
     assert_int_equal(masu_init(&d, NULL, need.host_bytes, &m, &detail), MASU_ERROR_MEMORY);
     uint64_t *budgets[] = {&d.host_budget, &d.device_budget};
     const uint64_t needs[] = {need.host_bytes, need.device_bytes};
     for (int i = 0; i < 2; i++) {
         *budgets[i] = needs[i] - 1;
         assert_int_equal(masu_memory_query(&d, &again, &detail), MASU_ERROR_LIMIT);
-        assert_int_equal(masu_init(&d, guarded + GUARD, need.host_bytes, &m, &detail), MASU_ERROR_LIMIT);
+        assert_int_equal(masu_init(&d, guarded + GUARD, need.host_bytes, &m, &detail),
+                         MASU_ERROR_LIMIT);
         *budgets[i] = needs[i];
         assert_int_equal(masu_memory_query(&d, &again, &detail), MASU_OK);
         *budgets[i] = 0;

@@ -40,7 +40,8 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     masu_instance box = masu_instance_find(s.m, instance);
     assert_int_not_equal(box.id, 0);
     for (uint32_t i = 0; i < 300; i++) {
-        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = i % 50 < 25 ? (i * 7 + i / 3) % 3 : MASU_RUNG_AUTO,
+        masu_frame_desc frame = {MASU_FRAME_DESC,
+                                 .rung = i % 50 < 25 ? (i * 7 + i / 3) % 3 : MASU_RUNG_AUTO,
                                  .time = 0.01 * i};
         masu_commands commands;
         masu_stats_info stats;
@@ -51,7 +52,8 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
         uint64_t before = masu_allocs_of_thread();
         if (i >= 2) {
             assert_int_equal(masu_stats(s.m, i % 2, &stats, &failure), MASU_OK);
-            assert_int_equal(masu_readback(s.m, i % 2, MASU_READBACK_DEPTH, &depth, &failure), MASU_OK);
+            assert_int_equal(masu_readback(s.m, i % 2, MASU_READBACK_DEPTH, &depth, &failure),
+                             MASU_OK);
             assert_int_equal(stats.frame, i - 2);
         }
         masu_frame_wall(s.m, i % 2, 1.0 + i % 40);
@@ -125,7 +127,8 @@ static void the_block_is_used_to_the_byte(void **state) {
     masu_commands commands;
     char error[ERROR_SIZE];
     masu_frame_desc frame = {MASU_FRAME_DESC};
-    assert_int_equal(masu_frame(m, &frame, &commands, &failure), MASU_ERROR_STATE); /* not loaded yet */
+    assert_int_equal(masu_frame(m, &frame, &commands, &failure),
+                     MASU_ERROR_STATE); /* not loaded yet */
     assert_non_null(strstr(failure.text, "masu_load"));
     load_all(&s, m);
     assert_int_equal(masu_frame(m, &frame, &commands, &failure), MASU_OK);

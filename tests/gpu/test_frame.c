@@ -82,7 +82,8 @@ static void sessions_share_what_is_compiled_and_nothing_else(void **state) {
     compare_all_rungs(&d);
     uint32_t asked = kept.asked - before.asked;
     print_message("%u pipelines requested, %u compiled\n", asked, kept.compiled - before.compiled);
-    assert_true(asked >= 8 && kept.compiled > before.compiled && kept.compiled - before.compiled <= asked);
+    assert_true(asked >= 8 && kept.compiled > before.compiled &&
+                kept.compiled - before.compiled <= asked);
     before = kept;
     compare_all_rungs(&d);
     assert_int_equal(kept.asked - before.asked, asked);

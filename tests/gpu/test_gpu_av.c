@@ -24,7 +24,8 @@ static void every_pass_stays_inside_its_buffers_and_images(void **state) {
     (void)state;
     /* The first three have the passes of the others; an instrumented pipeline takes long to
      * compile. */
-    static const char *const scenes[] = {"test_both", "test_shadows", "textures", "test_broken_field", "engine"};
+    static const char *const scenes[] = {"test_both", "test_shadows", "textures",
+                                         "test_broken_field", "engine"};
     for (size_t i = 0; i < trials(5, 3, 1); i++) {
         masu_session_desc d = gpu_av_desc(scenes[i]);
         masu_session s;
@@ -64,7 +65,8 @@ static const struct {
      "one array for all passes; values for absent or loaded images are ignored"},
     {"BestPractices-ImageBarrierAccessLayout",
      "the renderer does not know the host's copy, which waits for this"},
-    {"BestPractices-TransitionUndefinedToReadOnly", "a history that nothing has been written to is not looked at"},
+    {"BestPractices-TransitionUndefinedToReadOnly",
+     "a history that nothing has been written to is not looked at"},
 };
 static struct {
     char name[128], text[512];
@@ -120,7 +122,8 @@ static void each_scene_asked_for_stays_inside(void **state) {
         const char *why = NULL;
         for (size_t i = 0; i < sizeof declined / sizeof *declined; i++)
             if (strstr(kinds[k].name, declined[i].name)) why = declined[i].why;
-        printf("  %6u messages of %s: %s\n", kinds[k].count, kinds[k].name + 1, why ? why : kinds[k].text);
+        printf("  %6u messages of %s: %s\n", kinds[k].count, kinds[k].name + 1,
+               why ? why : kinds[k].text);
         wrong += !why;
     }
     printf("  %u scenes, %u kinds of messages that are faults\n", scenes, wrong);

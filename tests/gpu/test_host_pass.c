@@ -82,7 +82,8 @@ static void make_pipeline(painter *p, int tested) {
             .module = modules[i],
             .pName = "main"};
     }
-    VkPushConstantRange range = {VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(push)};
+    VkPushConstantRange range = {VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                                 sizeof(push)};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &range};
@@ -133,7 +134,9 @@ static void make_pipeline(painter *p, int tested) {
                                          .pDynamicState = &dynamics,
                                          .layout = p->layout,
                                          .renderPass = p->pass};
-    assert_int_equal(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, NULL, &p->pipeline), VK_SUCCESS);
+    assert_int_equal(
+        vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, NULL, &p->pipeline),
+        VK_SUCCESS);
     for (int i = 0; i < 2; i++) vkDestroyShaderModule(device, modules[i], NULL);
 }
 
@@ -150,7 +153,8 @@ static VkAttachmentDescription attachment_of(const masu_split_image *image) {
 
 static painter make_painter(masu_session *s, const masu_split *split, int tested) {
     painter p = {.s = s};
-    VkAttachmentDescription attachments[] = {attachment_of(&split->color), attachment_of(&split->depth)};
+    VkAttachmentDescription attachments[] = {attachment_of(&split->color),
+                                             attachment_of(&split->depth)};
     VkAttachmentReference color = {0, split->color.layout}, depth = {1, split->depth.layout};
     VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
                                     .colorAttachmentCount = 1,
@@ -183,7 +187,8 @@ static void destroy_painter(painter *p) {
     vkDestroyRenderPass(device, p->pass, NULL);
 }
 
-static void paint(VkCommandBuffer cmd, const painter *p, const masu_split_image *into, const push *what) {
+static void paint(VkCommandBuffer cmd, const painter *p, const masu_split_image *into,
+                  const push *what) {
     VkRect2D area = {{0, 0}, {into->width, into->height}};
     VkViewport viewport = {0, 0, (float)into->width, (float)into->height, 0, 1};
     VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
@@ -194,16 +199,16 @@ static void paint(VkCommandBuffer cmd, const painter *p, const masu_split_image 
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, p->pipeline);
     vkCmdSetViewport(cmd, 0, 1, &viewport);
     vkCmdSetScissor(cmd, 0, 1, &area);
-    vkCmdPushConstants(cmd, p->layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof *what,
-                       what);
+    vkCmdPushConstants(cmd, p->layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                       sizeof *what, what);
     vkCmdDraw(cmd, 4, 1, 0, 0);
     vkCmdEndRenderPass(cmd);
 }
 
 /* Copies an image in the layout of the split point, and restores the layout. */
 static void copy_out(VkCommandBuffer cmd, const masu_split_image *from, VkBuffer to) {
-    VkImageAspectFlags aspect =
-        from->format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+    VkImageAspectFlags aspect = from->format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                                     : VK_IMAGE_ASPECT_COLOR_BIT;
     VkImageMemoryBarrier b = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
                               .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
                               .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT,
@@ -213,8 +218,8 @@ static void copy_out(VkCommandBuffer cmd, const masu_split_image *from, VkBuffer
                               .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                               .image = from->image,
                               .subresourceRange = {aspect, 0, 1, 0, 1}};
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0, NULL,
-                         1, &b);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0,
+                         0, NULL, 0, NULL, 1, &b);
     VkBufferImageCopy copy = {.imageSubresource = {aspect, 0, 0, 1},
                               .imageExtent = {from->width, from->height, 1}};
     vkCmdCopyImageToBuffer(cmd, from->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, 1, &copy);
@@ -226,7 +231,8 @@ static void copy_out(VkCommandBuffer cmd, const masu_split_image *from, VkBuffer
                             .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
                             .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &read, 0, NULL, 1, &b);
+                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &read, 0, NULL, 1, &b);
 }
 
 static VkCommandBuffer begin_commands(masu_session *s) {
@@ -243,7 +249,8 @@ static VkCommandBuffer begin_commands(masu_session *s) {
 
 /* Submits the parts of a frame with the host's commands between them: own[i] after part i, each
  * null or ended here. */
-static void submit(masu_session *s, const masu_commands *commands, VkCommandBuffer own[MASU_MAX_PARTS]) {
+static void submit(masu_session *s, const masu_commands *commands,
+                   VkCommandBuffer own[MASU_MAX_PARTS]) {
     VkCommandBuffer all[2 * MASU_MAX_PARTS];
     uint32_t n = 0;
     for (uint32_t i = 0; i < commands->part_count; i++) {
@@ -252,7 +259,8 @@ static void submit(masu_session *s, const masu_commands *commands, VkCommandBuff
         assert_int_equal(vkEndCommandBuffer(own[i]), VK_SUCCESS);
         all[n++] = own[i];
     }
-    VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = n, .pCommandBuffers = all};
+    VkSubmitInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = n, .pCommandBuffers = all};
     assert_int_equal(vkQueueSubmit(s->host.queue, 1, &info, VK_NULL_HANDLE), VK_SUCCESS);
 }
 
@@ -269,7 +277,8 @@ static masu_commands next_frame(own_renderer *x, const masu_frame_desc *frame) {
     return commands;
 }
 
-static masu_split split_of(own_renderer *x, masu_split_bits which, uint32_t rung, uint32_t viewport) {
+static masu_split split_of(own_renderer *x, masu_split_bits which, uint32_t rung,
+                           uint32_t viewport) {
     masu_split split;
     if (masu_split_of(x->m, which, rung, viewport, &split, &failure)) fail_msg("%s", failure.text);
     return split;
@@ -302,7 +311,8 @@ static void compare_pictures(const char *scene, uint32_t storage, uint32_t split
     for (uint32_t r = 0; r < RUNGS; r++) {
         for (uint32_t k = 0; k < 3; k++) {
             for (uint32_t i = 0; i < 2; i++) {
-                masu_frame_desc frame = {MASU_FRAME_DESC, .rung = r, .time = 0.1 * k, .time_step = 0.1f, .cut = k == 0};
+                masu_frame_desc frame = {MASU_FRAME_DESC, .rung = r, .time = 0.1 * k,
+                                         .time_step = 0.1f, .cut = k == 0};
                 masu_commands commands = next_frame(&x[i], &frame);
                 assert_int_equal(commands.part_count, i ? parts : 1);
                 assert_ptr_equal(commands.buffer, commands.parts[0]);
@@ -333,9 +343,10 @@ static void with_nothing_between_the_picture_is_the_same(void **state) {
 
 /* ---- Reading the images ---------------------------------------------------------------------- */
 
-static void assert_same_image(const masu_split_image *image, const void *copied, masu_readback_image read,
-                              const char *what) {
-    if (image->width != read.width || image->height != read.height || memcmp(copied, read.pixels, read.row_bytes * read.height) != 0)
+static void assert_same_image(const masu_split_image *image, const void *copied,
+                              masu_readback_image read, const char *what) {
+    if (image->width != read.width || image->height != read.height ||
+        memcmp(copied, read.pixels, read.row_bytes * read.height) != 0)
         fail_msg("%s: %ux%u differs from the readback, %ux%u",
                  what, image->width, image->height, read.width, read.height);
 }
@@ -352,10 +363,11 @@ static void compare_copies(const char *scene) {
     make_own(&s, &x, &d);
     masu_headless_buffer copies[7];
     for (uint32_t i = 0; i < 7; i++)
-        assert_ok(masu_headless_buffer_create(&s.host, W * H * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &copies[i], error,
-                                              sizeof error));
+        assert_ok(masu_headless_buffer_create(&s.host, W * H * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                              &copies[i], error, sizeof error));
     for (uint32_t k = 0; k < 2 * RUNGS; k++) {
-        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = k % RUNGS, .time = 0.1 * k, .time_step = 0.1f};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = k % RUNGS, .time = 0.1 * k,
+                                 .time_step = 0.1f};
         masu_commands commands = next_frame(&x, &frame);
         masu_split tone = split_of(&x, MASU_SPLIT_BEFORE_TONE, commands.rung, 0);
         masu_split output = split_of(&x, MASU_SPLIT_AFTER_UPSCALE, commands.rung, 0);
@@ -368,10 +380,12 @@ static void compare_copies(const char *scene) {
         submit(&s, &commands, own);
         finish(&s, own);
         for (uint32_t i = 0; i < 6; i++) {
-            static const masu_readback_bits bits[] = {MASU_READBACK_DEPTH, MASU_READBACK_HDR, MASU_READBACK_VELOCITY};
+            static const masu_readback_bits bits[] = {MASU_READBACK_DEPTH, MASU_READBACK_HDR,
+                                                      MASU_READBACK_VELOCITY};
             char what[80];
             snprintf(what, sizeof what, "%s, rung %u, image %u", scene, commands.rung, i);
-            assert_same_image(&images[i], copies[i].mapped, readback_of(&x, commands.slot, bits[i % 3]), what);
+            assert_same_image(&images[i], copies[i].mapped,
+                              readback_of(&x, commands.slot, bits[i % 3]), what);
         }
         read_target(&s, &x, pixels[0]);
         assert_int_equal(output.color.format, VK_FORMAT_R8G8B8A8_UNORM);
@@ -405,13 +419,18 @@ static const push leaning = {.corner = {-1.6f, -0.7f, 0.5f, 0},
                              .across = {0.2f, 1.7f, -0.4f, 0},
                              .color = {0.75f, 0.25f, 0.125f, 1}};
 
-static const masu_camera oblique = {
-    .position = {1.2, 0.9, 3.2}, .forward = {-1.2f, -0.8f, -3.2f}, .fov_y = 0.75f, .near_distance = 0.07f};
+static const masu_camera oblique = {.position = {1.2, 0.9, 3.2},
+                                    .forward = {-1.2f, -0.8f, -3.2f},
+                                    .fov_y = 0.75f,
+                                    .near_distance = 0.07f};
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 static void unit(double v[3]) {
@@ -421,7 +440,8 @@ static void unit(double v[3]) {
 
 /* Intersection of a ray through an image position with the parallelogram: 1 and the depth, 0 for a
  * miss, -1 near its rim. */
-static int meets(const push *q, const masu_camera *c, double ndc_x, double ndc_y, double aspect, double *depth) {
+static int meets(const push *q, const masu_camera *c, double ndc_x, double ndc_y, double aspect,
+                 double *depth) {
     double forward[3], right[3], up[3] = {0, 1, 0}, ray[3], to[3], normal[3], u[3], v[3], at[3];
     for (int i = 0; i < 3; i++) {
         forward[i] = (double)c->forward[i];
@@ -434,12 +454,14 @@ static int meets(const push *q, const masu_camera *c, double ndc_x, double ndc_y
     unit(right);
     cross(right, forward, up);
     double tan_y = tan(0.5 * (double)c->fov_y);
-    for (int i = 0; i < 3; i++) ray[i] = forward[i] + right[i] * tan_y * aspect * ndc_x - up[i] * tan_y * ndc_y;
+    for (int i = 0; i < 3; i++)
+        ray[i] = forward[i] + right[i] * tan_y * aspect * ndc_x - up[i] * tan_y * ndc_y;
     cross(u, v, normal);
     double t = dot(to, normal) / dot(ray, normal);
     for (int i = 0; i < 3; i++) at[i] = ray[i] * t - to[i];
     double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), au = dot(at, u), av = dot(at, v);
-    double a = (au * vv - av * uv) / (uu * vv - uv * uv), b = (av * uu - au * uv) / (uu * vv - uv * uv);
+    double a = (au * vv - av * uv) / (uu * vv - uv * uv),
+           b = (av * uu - au * uv) / (uu * vv - uv * uv);
     *depth = (double)c->near_distance / t;
     double rim = fmin(fmin(a, 1 - a), fmin(b, 1 - b));
     return t > 0 && rim > 0.03 ? 1 : t <= 0 || rim < -0.03 ? 0 : -1;
@@ -451,8 +473,8 @@ typedef struct drawn {
 } drawn;
 
 /* A frame with the parallelogram; copies the HDR image at that point to `hdr`. */
-static masu_commands draw_leaning(masu_session *s, own_renderer *x, const painter *p, const masu_frame_desc *frame,
-                                  const masu_headless_buffer *hdr) {
+static masu_commands draw_leaning(masu_session *s, own_renderer *x, const painter *p,
+                                  const masu_frame_desc *frame, const masu_headless_buffer *hdr) {
     masu_commands commands = next_frame(x, frame);
     masu_split split = split_of(x, MASU_SPLIT_BEFORE_TONE, commands.rung, frame->viewport);
     masu_frame_view view;
@@ -469,8 +491,9 @@ static masu_commands draw_leaning(masu_session *s, own_renderer *x, const painte
     return commands;
 }
 
-static void check_drawn(own_renderer *x, const masu_commands *commands, const masu_frame_desc *frame,
-                        const uint16_t *hdr, const uint8_t *shown, uint32_t shown_width, const char *what) {
+static void check_drawn(own_renderer *x, const masu_commands *commands,
+                        const masu_frame_desc *frame, const uint16_t *hdr, const uint8_t *shown,
+                        uint32_t shown_width, const char *what) {
     masu_readback_image depths = readback_of(x, commands->slot, MASU_READBACK_DEPTH);
     masu_readback_image before = readback_of(x, commands->slot, MASU_READBACK_HDR);
     masu_split split = split_of(x, MASU_SPLIT_BEFORE_TONE, commands->rung, frame->viewport);
@@ -492,11 +515,13 @@ static void check_drawn(own_renderer *x, const masu_commands *commands, const ma
             n.seen++;
             for (int c = 0; c < 3; c++) {
                 double got = half_float(hdr[4 * i + (uint32_t)c]);
-                if (got != (double)leaning.color[c]) fail_msg("%s: %u, %u: not drawn: %g", what, i % w, i / w, got);
+                if (got != (double)leaning.color[c])
+                    fail_msg("%s: %u, %u: not drawn: %g", what, i % w, i / w, got);
                 if (!shown) continue;
                 double code = 255.0 * masu_ref_srgb_encode(expected[c]);
                 double is = shown[4 * (i / w * shown_width + i % w) + (uint32_t)c];
-                if (fabs(is - code) > 1.0) fail_msg("%s: %u, %u shows %g, not %g", what, i % w, i / w, is, code);
+                if (fabs(is - code) > 1.0)
+                    fail_msg("%s: %u, %u shows %g, not %g", what, i % w, i / w, is, code);
             }
         } else {
             n.hidden += met;
@@ -526,8 +551,8 @@ static void check_drawing(const char *scene) {
     masu_split split = split_of(&x, MASU_SPLIT_BEFORE_TONE, 0, 0);
     painter p = make_painter(&s, &split, 1);
     masu_headless_buffer hdr;
-    assert_ok(masu_headless_buffer_create(&s.host, W * H * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &hdr, error,
-                                          sizeof error));
+    assert_ok(masu_headless_buffer_create(&s.host, W * H * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                          &hdr, error, sizeof error));
     masu_camera shaken = oblique;
     shaken.jitter[0] = 0.4f;
     shaken.jitter[1] = -0.3f;
@@ -535,7 +560,8 @@ static void check_drawing(const char *scene) {
     assert_int_equal(masu_light_of(x.m, &light, &failure), MASU_OK);
     light.exposure = 1.5f;
     for (uint32_t k = 0; k < 3 * RUNGS; k++) {
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = k < 2 * RUNGS ? &oblique : &shaken, .light = &light, .rung = k % RUNGS};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = k < 2 * RUNGS ? &oblique : &shaken,
+                                 .light = &light, .rung = k % RUNGS};
         masu_commands commands = draw_leaning(&s, &x, &p, &frame, &hdr);
         read_target(&s, &x, pixels[0]);
         snprintf(what, sizeof what, "%s, rung %u, frame %u", scene, commands.rung, k);
@@ -573,8 +599,8 @@ static void the_same_in_viewports_and_after_a_resize(void **state) {
     assert_int_equal(split.color.width, 79);
     painter p = make_painter(&s, &split, 1);
     masu_headless_buffer hdr;
-    assert_ok(masu_headless_buffer_create(&s.host, W * H * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &hdr, error,
-                                          sizeof error));
+    assert_ok(masu_headless_buffer_create(&s.host, W * H * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                          &hdr, error, sizeof error));
     for (uint32_t k = 0; k < 8; k++) {
         if (k == 4) {
             static const masu_viewport stacked[] = {{0, 0, 140, 40}, {3, 41, 130, 38}};
@@ -582,13 +608,16 @@ static void the_same_in_viewports_and_after_a_resize(void **state) {
             masu_detail detail;
             masu_headless_target_destroy(&s.host, &x.target);
             make_target(&s, &x, 140, 80, 0);
-            if (masu_resize(x.m, (VkExtent2D){140, 80}, &t, stacked, &detail)) fail_msg("%s", detail.text);
+            if (masu_resize(x.m, (VkExtent2D){140, 80}, &t, stacked, &detail))
+                fail_msg("%s", detail.text);
             masu_split again = split_of(&x, MASU_SPLIT_BEFORE_TONE, 0, 1);
-            assert_true(again.color.view == split.color.view && again.depth.view == split.depth.view);
+            assert_true(again.color.view == split.color.view &&
+                        again.depth.view == split.depth.view);
             assert_int_equal(again.color.image_width, W);
             assert_int_equal(again.color.width, 130);
         }
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &oblique, .rung = k % 4 < 2 ? 0 : 3, .viewport = k % 2};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &oblique, .rung = k % 4 < 2 ? 0 : 3,
+                                 .viewport = k % 2};
         masu_commands commands = draw_leaning(&s, &x, &p, &frame, &hdr);
         snprintf(what, sizeof what, "frame %u", k);
         check_drawn(&x, &commands, &frame, hdr.mapped, NULL, 0, what);
@@ -601,17 +630,20 @@ static void the_same_in_viewports_and_after_a_resize(void **state) {
 
 /* Mean relative error of the depths of the unit sphere at the origin, at the rays of a projection
  * that hit it. */
-static double sphere_error(const masu_frame_view *v, const float p[16], masu_readback_image depths) {
+static double sphere_error(const masu_frame_view *v, const float p[16],
+                           masu_readback_image depths) {
     double sum = 0.0;
     uint32_t n = 0, w = depths.width, h = depths.height;
     for (uint32_t i = 0; i < w * h; i++) {
         double x = (i % w + 0.5) / w * 2 - 1, y = (i / w + 0.5) / h * 2 - 1, ray[3];
-        double in_view[3] = {(x + (double)p[2]) / (double)p[0], (y + (double)p[6]) / (double)p[5], -1.0};
+        double in_view[3] = {(x + (double)p[2]) / (double)p[0], (y + (double)p[6]) / (double)p[5],
+                             -1.0};
         for (int k = 0; k < 3; k++) {
             ray[k] = 0.0;
             for (int r = 0; r < 3; r++) ray[k] += in_view[r] * (double)v->view[4 * r + k];
         }
-        double a = dot(ray, ray), b = dot(ray, v->position), c = dot(v->position, v->position) - 1.0;
+        double a = dot(ray, ray), b = dot(ray, v->position),
+               c = dot(v->position, v->position) - 1.0;
         double root = b * b - a * c, depth = (double)((const float *)depths.pixels)[i];
         if (root < 0.05 * b * b || depth <= 0.0) continue;
         double expected = (double)v->near_distance * a / (-b - sqrt(root));
@@ -634,7 +666,8 @@ static void matrices_are_those_of_the_picture(void **state) {
     shaken.jitter[1] = -0.3f;
     for (uint32_t k = 0; k < 12; k++) {
         const uint32_t rung = k % 2 ? 3 : 0;
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = k < 4 ? &oblique : &shaken, .rung = rung};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = k < 4 ? &oblique : &shaken,
+                                 .rung = rung};
         masu_commands commands = next_frame(&x, &frame);
         submit(&s, &commands, NULL);
         finish(&s, NULL);
@@ -645,9 +678,13 @@ static void matrices_are_those_of_the_picture(void **state) {
         double other = sphere_error(&view, view.output_projection, depths);
         if (!(own < 1e-4)) fail_msg("frame %u: depths have an error of %g", k, own);
         int resolves = rung == 3, shifted = fabsf(view.jitter[0]) + fabsf(view.jitter[1]) > 0.1f;
-        if (resolves && shifted && !(other > 5.0 * own)) fail_msg("frame %u: %g without jitter, %g with", k, other, own);
-        if (!resolves) assert_memory_equal(view.projection, view.output_projection, sizeof view.projection);
-        if (resolves) assert_true(fabsf(view.output_projection[2]) < 1e-6f && fabsf(view.output_projection[6]) < 1e-6f);
+        if (resolves && shifted && !(other > 5.0 * own))
+            fail_msg("frame %u: %g without jitter, %g with", k, other, own);
+        if (!resolves)
+            assert_memory_equal(view.projection, view.output_projection, sizeof view.projection);
+        if (resolves)
+            assert_true(fabsf(view.output_projection[2]) < 1e-6f &&
+                        fabsf(view.output_projection[6]) < 1e-6f);
         if (rung == 0) assert_true(view.jitter[0] == frame.camera->jitter[0]);
         assert_true(view.position[2] == oblique.position[2]);
         assert_int_equal(view.output_width, W);
@@ -697,7 +734,8 @@ static void what_is_drawn_over_the_picture_is_shown(void **state) {
             uint32_t off = 0;
             for (uint32_t i = 0; i < BYTES; i++) {
                 double expected = pixels[0][i];
-                if (i / 4 % W < W / 2 && i % 4 < 3) expected = expected * 0.5 + 255.0 * (double)q.color[i % 4];
+                if (i / 4 % W < W / 2 && i % 4 < 3)
+                    expected = expected * 0.5 + 255.0 * (double)q.color[i % 4];
                 off += fabs(pixels[1][i] - expected) > 1.5;
             }
             /* In the second frame, reflections have other noise, and a rung with temporal has other
@@ -705,7 +743,8 @@ static void what_is_drawn_over_the_picture_is_shown(void **state) {
             if (off > (r == 3 ? BYTES / 4 : BYTES / 50))
                 fail_msg("rung %u: %u bytes are not as expected", r, off);
             double sum = 0;
-            for (uint32_t i = 0; i < BYTES; i += 4) sum += abs(pixels[1][i] - pixels[0][i]) * (i / 4 % W < W / 2);
+            for (uint32_t i = 0; i < BYTES; i += 4)
+                sum += abs(pixels[1][i] - pixels[0][i]) * (i / 4 % W < W / 2);
             assert_true(sum > 5.0 * W * H / 2);
         }
     }
@@ -729,7 +768,8 @@ static void an_upscaled_source_and_a_storage_target_have_the_point_too(void **st
     masu_commands commands = next_frame(&x, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 1});
     char error[ERROR_SIZE];
     masu_headless_buffer copy;
-    assert_ok(masu_headless_buffer_create(&s.host, BYTES, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &copy, error, sizeof error));
+    assert_ok(masu_headless_buffer_create(&s.host, BYTES, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &copy,
+                                          error, sizeof error));
     split.color.image = x.target.image;
     VkCommandBuffer own[MASU_MAX_PARTS] = {begin_commands(&s)};
     copy_out(own[0], &split.color, copy.buffer);
@@ -739,7 +779,8 @@ static void an_upscaled_source_and_a_storage_target_have_the_point_too(void **st
     assert_memory_equal(copy.mapped, pixels[0], BYTES);
     unmake_own(&s, &x);
     masu_headless_source source;
-    assert_ok(masu_headless_source_create(&s.host, pixels[0], W, H, W, H, 0, &source, error, sizeof error));
+    assert_ok(masu_headless_source_create(&s.host, pixels[0], W, H, W, H, 0, &source, error,
+                                          sizeof error));
     d.scene = NULL;
     d.targets.storage = 0;
     d.source = (masu_source){.view = source.view, .width = W / 2, .height = H / 2};
@@ -776,12 +817,16 @@ static void what_is_not_there_is_named(void **state) {
     masu_split split;
     masu_frame_view view;
     assert_int_equal(masu_frame_view_of(x.m, &view, &failure), MASU_ERROR_STATE); /* no frame yet */
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_AFTER_UPSCALE, 0, 0, &split, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_AFTER_UPSCALE, 0, 0, &split, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.what, "which");
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_ALL, 0, 0, &split, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, RUNGS, 0, &split, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_ALL, 0, 0, &split, &failure),
+                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, RUNGS, 0, &split, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.text, "rung 5 does not exist, the last one is 4");
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, 0, 1, &split, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, 0, 1, &split, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.text, "viewport 1 does not exist, the last one is 0");
     unmake_own(&s, &x);
     close_session(&s);

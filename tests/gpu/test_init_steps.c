@@ -129,9 +129,11 @@ static void sizes_change_between_steps(void **state) {
     make_own(&s, &x, &s.desc);
     own_renderer before = x;
     make_target(&s, &x, W / 2, H / 2, 1);
-    masu_targets to = {.images = &x.target.image, .views = &x.target.view, .count = 1, .storage = 1};
+    masu_targets to = {
+        .images = &x.target.image, .views = &x.target.view, .count = 1, .storage = 1};
     masu_progress progress;
-    for (uint32_t i = 0; i < 5; i++) assert_int_equal(masu_init_step(x.m, NULL, &failure), MASU_INCOMPLETE);
+    for (uint32_t i = 0; i < 5; i++)
+        assert_int_equal(masu_init_step(x.m, NULL, &failure), MASU_INCOMPLETE);
     assert_int_equal(masu_resize(x.m, small.output, &to, NULL, &failure), MASU_OK);
     while (masu_init_step(x.m, &progress, &failure) == MASU_INCOMPLETE) continue;
     assert_int_equal(progress.rungs, 7);
@@ -208,11 +210,13 @@ static void without_steps_there_is_nothing_to_do(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(rungs_become_ready_one_after_another, open_both, close_scene),
+        cmocka_unit_test_setup_teardown(rungs_become_ready_one_after_another, open_both,
+                                        close_scene),
         cmocka_unit_test_setup_teardown(sizes_change_between_steps, open_both, close_scene),
         cmocka_unit_test_setup_teardown(each_step_can_be_the_last, open_both, close_scene),
         cmocka_unit_test_setup_teardown(each_call_in_a_step_can_fail, open_both, close_scene),
-        cmocka_unit_test_setup_teardown(without_steps_there_is_nothing_to_do, open_both, close_scene),
+        cmocka_unit_test_setup_teardown(without_steps_there_is_nothing_to_do, open_both,
+                                        close_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,10 +43,12 @@ static void bake(const char *name, float red, float green, float glow, int swapp
         "{\"name\": \"box\", \"moving\": true, \"mesh\": {\"box\": {\"size\": [1, 1, 1]}}, "
         "\"translate\": [-2, 0.7, 0], \"occluder\": true, \"material\": "
         "{\"base_color\": [%g, %g, 0.25], \"roughness\": 0.9}},"
-        "{\"name\": \"lamp\", \"moving\": true, \"area_light\": false, \"mesh\": {\"box\": {\"size\": "
+        "{\"name\": \"lamp\", \"moving\": true, \"area_light\": false, \"mesh\": {\"box\": "
+        "{\"size\": "
         "[0.6, 0.6, 0.6]}}, \"translate\": [0, 0.5, 0], \"material\": {\"base_color\": [0, 0, 0], "
         "\"emissive\": [%g, %g, %g]}},"
-        "{\"name\": \"wall\", \"moving\": true, \"mesh\": {\"plane\": {\"size_x\": 1.4, \"size_z\": "
+        "{\"name\": \"wall\", \"moving\": true, \"mesh\": {\"plane\": {\"size_x\": 1.4, "
+        "\"size_z\": "
         "1.4}}, \"rotate\": [90, 0, 0], \"translate\": [2, 0.9, 0], \"material\": {\"base_color\": "
         "[%g, %g, 1], \"roughness\": 1, \"repeat\": true, \"base_color_map\": \"%s\"}},"
         "{\"name\": \"pane\", \"moving\": true, \"mesh\": {\"box\": {\"size\": [1, 1, 0.05]}}, "
@@ -57,12 +59,13 @@ static void bake(const char *name, float red, float green, float glow, int swapp
         "true}}],"
         "\"camera\": {\"fov_y\": 45, \"near\": 0.05, \"keys\": [{\"position\": [0, 2.5, 6], "
         "\"target\": [0, 0.5, 0]}]},"
-        "\"sun\": {\"azimuth\": 60, \"elevation\": 40, \"intensity\": 1, \"shadows\": {\"cascades\": "
+        "\"sun\": {\"azimuth\": 60, \"elevation\": 40, \"intensity\": 1, \"shadows\": "
+        "{\"cascades\": "
         "1, \"resolution\": 512, \"distance\": 20}},"
         "\"ambient\": [0.3, 0.3, 0.3], \"reflections\": {}, \"ambient_occlusion\": false}",
         0.8 * (double)red, 0.4 * (double)green, 0.5 * (double)glow, 0.25 * (double)glow,
-        0.125 * (double)glow,         (double)red, (double)green, texture(swapped), 0.8 * (double)red, 0.4 * (double)green,
-        0.8 * (double)red, 0.4 * (double)green);
+        0.125 * (double)glow, (double)red, (double)green, texture(swapped), 0.8 * (double)red,
+        0.4 * (double)green, 0.8 * (double)red, 0.4 * (double)green);
     bake_scene(name, json);
 }
 
@@ -99,7 +102,8 @@ static void draw_last(uint8_t *out) {
 }
 
 static void set(const char *model, const masu_look *look) {
-    assert_int_equal(masu_model_set_look(s.m, masu_model_find(s.m, model), look, &failure), MASU_OK);
+    assert_int_equal(masu_model_set_look(s.m, masu_model_find(s.m, model), look, &failure),
+                     MASU_OK);
 }
 
 static const char *const names[] = {"box", "lamp", "wall", "pane", "sign"};
@@ -131,11 +135,13 @@ static void looks_are_as_if_baked_so(void **state) {
     open_looks("plain", 1, 1);
     draw_last(images[1]);
     for (size_t k = 0; k < KINDS; k++)
-        set(names[k], &(masu_look){.tint = {0.5f, 0.25f, 1}, .emission = strcmp(names[k], "sign") ? 4 : 0,
+        set(names[k], &(masu_look){.tint = {0.5f, 0.25f, 1},
+                                   .emission = strcmp(names[k], "sign") ? 4 : 0,
                                    .uv_offset = {0.5f, 0}});
     draw_last(images[2]);
     uint32_t before = differing(images[0], images[1], 1), off = differing(images[0], images[2], 1);
-    print_message("%u of %u pixels differ by more than 1 from the scene baked so, before %u\n", off, W * H, before);
+    print_message("%u of %u pixels differ by more than 1 from the scene baked so, before %u\n", off,
+                  W * H, before);
     assert_true(before > W * H / 10);
     assert_int_equal(off, 0);
     /* And back. */
@@ -173,13 +179,16 @@ static void reserved_looks_change_no_bit_and_cost_what_is_stated(void **state) {
 
 static void values_out_of_range_are_rejected(void **state) {
     (void)state;
-    static const masu_look good[] = {{.tint = {1, 1, 1}, .emission = 1e6f, .fade = 1, .flags = 7},
-                                     {.emission = -1e6f, .uv_offset = {1e4f, -1e4f}, .uv_scale = {-1e4f, 1e4f}}};
-    static const masu_look bad[] = {{.tint = {0, 1.001f, 0}}, {.tint = {-0.001f, 0, 0}}, {.emission = 1.1e6f},
-                                    {.uv_offset = {0, 1.1e4f}}, {.uv_scale = {1.1e4f, 0}}, {.fade = 1.001f},
-                                    {.fade = -0.001f}, {.flags = 8}};
-    static const char *const what[] = {"look.tint", "look.tint", "look.emission", "look.uv_offset", "look.uv_scale",
-                                       "look.fade", "look.fade", "look.flags"};
+    static const masu_look good[] = {
+        {.tint = {1, 1, 1}, .emission = 1e6f, .fade = 1, .flags = 7},
+        {.emission = -1e6f, .uv_offset = {1e4f, -1e4f}, .uv_scale = {-1e4f, 1e4f}}};
+    static const masu_look bad[] = {{.tint = {0, 1.001f, 0}},  {.tint = {-0.001f, 0, 0}},
+                                    {.emission = 1.1e6f},      {.uv_offset = {0, 1.1e4f}},
+                                    {.uv_scale = {1.1e4f, 0}}, {.fade = 1.001f},
+                                    {.fade = -0.001f},         {.flags = 8}};
+    static const char *const what[] = {"look.tint",      "look.tint",     "look.emission",
+                                       "look.uv_offset", "look.uv_scale", "look.fade",
+                                       "look.fade",      "look.flags"};
     masu_look got;
     open_looks("plain", 1, 0);
     masu_instance box = masu_instance_at(s.m, 2);
@@ -194,13 +203,17 @@ static void values_out_of_range_are_rejected(void **state) {
     }
     assert_int_equal(masu_instance_get_look(s.m, box, &got, &failure), MASU_OK);
     assert_memory_equal(&got, &good[1], sizeof got);
-    assert_int_equal(masu_instance_set_look(s.m, (masu_instance){0}, &good[0], &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_set_look(s.m, (masu_model){0}, &good[0], &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_look(s.m, (masu_instance){0}, &good[0], &failure),
+                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_look(s.m, (masu_model){0}, &good[0], &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_instance_set_look(s.m, box, NULL, &failure), MASU_ERROR_ARGUMENT);
     close_session(&s);
     open_looks("plain", 0, 0);
-    assert_int_equal(masu_instance_set_look(s.m, masu_instance_at(s.m, 2), &good[0], &failure), MASU_ERROR_STATE);
-    assert_int_equal(masu_instance_get_look(s.m, masu_instance_at(s.m, 2), &got, &failure), MASU_ERROR_STATE);
+    assert_int_equal(masu_instance_set_look(s.m, masu_instance_at(s.m, 2), &good[0], &failure),
+                     MASU_ERROR_STATE);
+    assert_int_equal(masu_instance_get_look(s.m, masu_instance_at(s.m, 2), &got, &failure),
+                     MASU_ERROR_STATE);
     close_session(&s);
 }
 
@@ -249,10 +262,12 @@ static void fades_leave_out_their_share_of_pixels(void **state) {
         draw_last(images[2]);
         uint32_t wall = 0, left = 0;
         for (uint32_t p = 0; p < W * H / 2; p++) { /* above the mirror, whose image stays solid */
-            const uint8_t *with = images[0] + 4 * p, *without = images[1] + 4 * p, *is = images[2] + 4 * p;
+            const uint8_t *with = images[0] + 4 * p, *without = images[1] + 4 * p,
+                          *is = images[2] + 4 * p;
             if (abs(with[0] - without[0]) + abs(with[1] - without[1]) < 24) continue;
             wall++;
-            left += abs(is[0] - without[0]) + abs(is[1] - without[1]) < abs(is[0] - with[0]) + abs(is[1] - with[1]);
+            left += abs(is[0] - without[0]) + abs(is[1] - without[1]) <
+                    abs(is[0] - with[0]) + abs(is[1] - with[1]);
         }
         double share = (double)left / wall;
         print_message("fade %g: %.3f of %u pixels are left out\n", (double)fades[i], share, wall);
@@ -297,9 +312,11 @@ static uint32_t picked(uint32_t x, uint32_t y, uint32_t mask) {
     masu_commands commands;
     masu_pick_info info;
     masu_node_state node;
-    draw(&s, &(masu_frame_desc){.pick = 1, .pick_x = x, .pick_y = y, .pick_mask = mask}, &commands, NULL);
+    draw(&s, &(masu_frame_desc){.pick = 1, .pick_x = x, .pick_y = y, .pick_mask = mask}, &commands,
+         NULL);
     assert_int_equal(masu_pick(s.m, commands.slot, &info, &failure), MASU_OK);
-    assert_int_equal(masu_model_node_get(s.m, masu_model_find(s.m, "box"), 0, &node, &failure), MASU_OK);
+    assert_int_equal(masu_model_node_get(s.m, masu_model_find(s.m, "box"), 0, &node, &failure),
+                     MASU_OK);
     return info.instance.id == node.instance.id;
 }
 
@@ -315,7 +332,8 @@ static void flags_remove_from_one_thing_only(void **state) {
     draw_last(images[2]);
     set("box", &(masu_look){.flags = MASU_LOOK_NO_SHADOW});
     draw_last(images[3]);
-    uint32_t whole = differing(images[0], images[1], 4), traced = differing(images[0], images[2], 4),
+    uint32_t whole = differing(images[0], images[1], 4),
+             traced = differing(images[0], images[2], 4),
              shadow = differing(images[0], images[3], 4);
     print_message("box %u pixels, its reflection %u, its shadow %u\n", whole, traced, shadow);
     assert_true(traced > 100 && shadow > 100);
@@ -336,7 +354,8 @@ static void a_view_that_hides_an_instance_keeps_its_shadow(void **state) {
     draw_last(images[1]);
     set("box", &(masu_look){.hidden_views = 1u, .flags = MASU_LOOK_NO_SHADOW});
     draw_last(images[2]);
-    set("box", &(masu_look){.hidden_views = 1u, .flags = MASU_LOOK_NO_SHADOW | MASU_LOOK_NOT_TRACED});
+    set("box",
+        &(masu_look){.hidden_views = 1u, .flags = MASU_LOOK_NO_SHADOW | MASU_LOOK_NOT_TRACED});
     draw_last(images[3]);
     assert_true(differing(images[0], images[1], 4) > 200);
     assert_true(shaded(images[1], images[2]) > 60);

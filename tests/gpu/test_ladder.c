@@ -189,12 +189,15 @@ static void memory_is_planned_once_for_all_rungs(void **state) {
 static PFN_vkGetInstanceProcAddr real_proc;
 static VkPhysicalDeviceProperties pretended;
 
-static VKAPI_ATTR void VKAPI_CALL pretend(VkPhysicalDevice physical, VkPhysicalDeviceProperties *out) {
+static VKAPI_ATTR void VKAPI_CALL pretend(VkPhysicalDevice physical,
+                                          VkPhysicalDeviceProperties *out) {
     vkGetPhysicalDeviceProperties(physical, out);
-    out->vendorID = pretended.vendorID, out->deviceID = pretended.deviceID, out->deviceType = pretended.deviceType;
+    out->vendorID = pretended.vendorID, out->deviceID = pretended.deviceID,
+    out->deviceType = pretended.deviceType;
 }
 
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL pretending_proc(VkInstance instance, const char *name) {
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL pretending_proc(VkInstance instance,
+                                                                const char *name) {
     if (!strcmp(name, "vkGetPhysicalDeviceProperties")) return (PFN_vkVoidFunction)pretend;
     return real_proc(instance, name);
 }

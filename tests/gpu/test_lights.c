@@ -47,19 +47,23 @@ static void begin_scene(double size) {
         60 * size, 60 * size);
     seed = 11;
     for (int i = 0; i < 24; i++) {
-        double at[3] = {random_between(&seed, -9, 9), random_between(&seed, 0.2, 2), random_between(&seed, -9, 9)}, s = random_between(&seed, 0.3, 1.4);
+        double at[3] = {random_between(&seed, -9, 9), random_between(&seed, 0.2, 2),
+                        random_between(&seed, -9, 9)},
+               s = random_between(&seed, 0.3, 1.4);
         add(", {\"mesh\": {\"%s}, \"name\": \"thing%d\", \"scale\": %g, "
             "\"translate\": [%g, %g, %g], \"material\": {\"base_color\": [%g, %g, %g], "
             "\"roughness\": %g, \"metallic\": %d}}",
             i % 2 ? "box\": {\"size\": [1, 1.5, 1]}" : "sphere\": {\"subdivisions\": 3}", i,
-            s * size, at[0] * size, at[1] * size, at[2] * size, random_between(&seed, 0, 1), random_between(&seed, 0, 1), random_between(&seed, 0, 1),
-            random_between(&seed, 0, 1), i % 5 == 0);
+            s * size, at[0] * size, at[1] * size, at[2] * size, random_between(&seed, 0, 1),
+            random_between(&seed, 0, 1), random_between(&seed, 0, 1), random_between(&seed, 0, 1),
+            i % 5 == 0);
     }
     for (int i = 0; i < 6 * blends; i++) {
         add(", {\"mesh\": {\"%s}, \"scale\": %g, \"translate\": [%g, %g, %g], "
             "\"material\": {\"roughness\": %g, \"opacity\": %g}}",
-            i % 2 ? "box\": {\"size\": [3, 3, 0.1]}" : "sphere\": {\"subdivisions\": 2}", random_between(&blend_seed, 0.5, 1.5) * size,
-            random_between(&blend_seed, -9, 9) * size, random_between(&blend_seed, 1, 5) * size, random_between(&blend_seed, -9, 9) * size,
+            i % 2 ? "box\": {\"size\": [3, 3, 0.1]}" : "sphere\": {\"subdivisions\": 2}",
+            random_between(&blend_seed, 0.5, 1.5) * size, random_between(&blend_seed, -9, 9) * size,
+            random_between(&blend_seed, 1, 5) * size, random_between(&blend_seed, -9, 9) * size,
             random_between(&blend_seed, 0.1, 1), random_between(&blend_seed, 0, 0.9));
     }
     add("], \"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
@@ -77,23 +81,28 @@ static void add_sdf(void) {
 static void add_lights(uint32_t count, double size, double low, double high) {
     add("\"lights\": [");
     for (uint32_t i = 0; i < count; i++) {
-        double range = random_spread(&seed, low, high) * size, outer = i % 7 ? random_between(&seed, 2, 80) : random_between(&seed, 80, 180);
+        double range = random_spread(&seed, low, high) * size,
+               outer = i % 7 ? random_between(&seed, 2, 80) : random_between(&seed, 80, 180);
         if (count >= 20 && size >= 1 && i % 11 < 2) { /* area lights among them */
             double half = range / 13;
-            add("%s{\"type\": \"%s\", \"name\": \"l%u\", \"position\": [%.9g, %.9g, %.9g], \"range\": %.9g, "
+            add("%s{\"type\": \"%s\", \"name\": \"l%u\", \"position\": [%.9g, %.9g, %.9g], "
+                "\"range\": %.9g, "
                 "\"half_u\": [%.9g, 0, %.9g], %s%.9g%s}",
-                i ? ", " : "", i % 11 ? "capsule" : "rectangle", i, random_between(&seed, -12, 12) * size,
-                random_between(&seed, -1, 5) * size, random_between(&seed, -12, 12) * size, range, half, half / 2,
+                i ? ", " : "", i % 11 ? "capsule" : "rectangle", i,
+                random_between(&seed, -12, 12) * size, random_between(&seed, -1, 5) * size,
+                random_between(&seed, -12, 12) * size, range, half, half / 2,
                 i % 11 ? "\"radius\": " : "\"half_v\": [0, ", half / 4, i % 11 ? "" : ", 0]");
             continue;
         }
         add("%s{\"type\": \"%s\", \"name\": \"l%u\", \"position\": [%.9g, %.9g, %.9g], "
             "\"color\": [%g, %g, %g], \"intensity\": %g, \"range\": %.9g, \"radius\": %g",
-            i ? ", " : "", i % 3 ? "point" : "spot", i, random_between(&seed, -12, 12) * size, random_between(&seed, -1, 5) * size,
-            random_between(&seed, -12, 12) * size, random_between(&seed, 0, 1), random_between(&seed, 0, 1), random_between(&seed, 0, 1),
+            i ? ", " : "", i % 3 ? "point" : "spot", i, random_between(&seed, -12, 12) * size,
+            random_between(&seed, -1, 5) * size, random_between(&seed, -12, 12) * size,
+            random_between(&seed, 0, 1), random_between(&seed, 0, 1), random_between(&seed, 0, 1),
             fmin(random_between(&seed, 0.1, 2) * range * range / 4, 1e9), range, 0.01 * size);
         if (i % 3 == 0)
-            add(", \"direction\": [%g, %g, %g], \"outer\": %g, \"inner\": %g", random_between(&seed, -1, 1), random_between(&seed, -1, 1),
+            add(", \"direction\": [%g, %g, %g], \"outer\": %g, \"inner\": %g",
+                random_between(&seed, -1, 1), random_between(&seed, -1, 1),
                 random_between(&seed, -1, 1) + 0.01, outer, outer * random_between(&seed, 0, 1));
         add("}");
     }
@@ -122,7 +131,8 @@ static void open_pictures(pictures *p, const char *scene, uint32_t width, uint32
     d.desc.rung_count = WAYS;
     d.desc.rungs[ALL_LIGHTS].light_tiles = MASU_OFF;
     d.desc.rungs[UNCULLED].frustum = MASU_OFF;
-    for (uint32_t way = 0; way < WAYS; way++) d.desc.rungs[way].local_shadows = MASU_OFF; /* test_local_shadows.c */
+    for (uint32_t way = 0; way < WAYS; way++)
+        d.desc.rungs[way].local_shadows = MASU_OFF; /* test_local_shadows.c */
     d.desc.debug.poison = 1;
     d.desc.reserve.particles = blends ? 8 : 0;
     open_session(&p->s, &d);
@@ -130,7 +140,11 @@ static void open_pictures(pictures *p, const char *scene, uint32_t width, uint32
 
 static const uint16_t *take(pictures *p, const masu_camera *camera, const masu_light *sun,
                             uint32_t rung, masu_stats_info *stats) {
-    masu_frame_desc frame = {.camera = camera, .light = sun, .rung = rung, .particles = sparks, .particle_count = blends ? 8 : 0};
+    masu_frame_desc frame = {.camera = camera,
+                             .light = sun,
+                             .rung = rung,
+                             .particles = sparks,
+                             .particle_count = blends ? 8 : 0};
     masu_commands commands;
     draw(&p->s, &frame, &commands, NULL);
     masu_stats_info own = stats_of(&p->s, commands.slot);
@@ -142,7 +156,8 @@ static const uint16_t *take(pictures *p, const masu_camera *camera, const masu_l
 static uint64_t lit_pixels(const uint16_t *hdr, uint64_t pixels) {
     uint64_t lit = 0;
     for (uint64_t i = 0; i < pixels; i++) {
-        lit += half_float(hdr[4 * i]) + half_float(hdr[4 * i + 1]) + half_float(hdr[4 * i + 2]) > 1e-4;
+        lit +=
+            half_float(hdr[4 * i]) + half_float(hdr[4 * i + 1]) + half_float(hdr[4 * i + 2]) > 1e-4;
         for (int k = 0; k < 3; k++) assert_true((hdr[4 * i + (uint64_t)k] & 0x7C00u) != 0x7C00u);
     }
     return lit;
@@ -179,18 +194,23 @@ static void compare_ways(pictures *p, uint32_t lights, uint32_t frames, double s
     static uint16_t first[WAYS][4 * 256 * 256];
     uint64_t pixels = (uint64_t)p->width * p->height;
     for (uint32_t f = 0; f < frames; f++) {
-        masu_camera c = look(random_between(&seed, -10, 10) * size, random_between(&seed, 0.3, 6) * size, random_between(&seed, -10, 10) * size, random_between(&seed, -1, 1),
-                             random_between(&seed, -1, 0.2), random_between(&seed, -1, 1), f % 4 ? random_between(&seed, 0.3, 1.6) : random_between(&seed, 0.01, 3.05));
+        masu_camera c =
+            look(random_between(&seed, -10, 10) * size, random_between(&seed, 0.3, 6) * size,
+                 random_between(&seed, -10, 10) * size, random_between(&seed, -1, 1),
+                 random_between(&seed, -1, 0.2), random_between(&seed, -1, 1),
+                 f % 4 ? random_between(&seed, 0.3, 1.6) : random_between(&seed, 0.01, 3.05));
         masu_stats_info stats[WAYS];
         c.near_distance = (float)near;
         set_random(p, lights, size);
         for (int i = 0; i < 8 * blends; i++) {
-            sparks[i] = (masu_particle){.half_width = (float)(random_between(&blend_seed, 0.1, 2) * size),
-                                        .color = {1, 1, 1},
-                                        .opacity = 0.5f,
-                                        .flags = MASU_PARTICLE_LIT};
+            sparks[i] =
+                (masu_particle){.half_width = (float)(random_between(&blend_seed, 0.1, 2) * size),
+                                .color = {1, 1, 1},
+                                .opacity = 0.5f,
+                                .flags = MASU_PARTICLE_LIT};
             for (int k = 0; k < 3; k++)
-                sparks[i].position[k] = c.position[k] + 4 * size * (double)c.forward[k] + random_between(&blend_seed, -3, 3) * size;
+                sparks[i].position[k] = c.position[k] + 4 * size * (double)c.forward[k] +
+                                        random_between(&blend_seed, -3, 3) * size;
         }
         for (uint32_t way = 0; way < WAYS; way++) {
             memcpy(first[way], take(p, &c, NULL, way, &stats[way]), pixels * 8);
@@ -226,10 +246,12 @@ static void tiles_begin_at_the_near_plane(void **state) {
     pictures p;
     used = 0;
     add("{\"models\": [{\"mesh\": {\"box\": {\"size\": [8, 4, 1]}}, \"translate\": [0, -3, -20]}, "
-        "{\"mesh\": {\"box\": {\"size\": [9, 6, 0.01]}}, \"material\": {\"roughness\": 0.5, \"opacity\": 0.5}}], "
+        "{\"mesh\": {\"box\": {\"size\": [9, 6, 0.01]}}, \"material\": {\"roughness\": 0.5, "
+        "\"opacity\": 0.5}}], "
         "\"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
         "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, "
-        "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 1], \"intensity\": 20, \"range\": 6}]}");
+        "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 1], \"intensity\": 20, \"range\": "
+        "6}]}");
     bake_scene("before", json);
     open_pictures(&p, "before", 96, 64, 1);
     masu_camera c = look(0, 0, 6, 0, 0, -1, 0.9);
@@ -340,7 +362,8 @@ static error_info compare_light(pictures *p, const masu_camera *c,
         depths[i] = (float)((double)c->near_distance / c->position[2]);
     assert_int_equal(masu_punctual_light_set(p->s.m, off, &dark, &failure), MASU_OK);
     for (uint32_t n = 0; n < 30; n++) {
-        uint32_t x = (uint32_t)random_between(&seed, 0, p->width - 0.01), y = (uint32_t)random_between(&seed, 0, p->height - 0.01);
+        uint32_t x = (uint32_t)random_between(&seed, 0, p->width - 0.01),
+                 y = (uint32_t)random_between(&seed, 0, p->height - 0.01);
         double at[3], l[3], color[3];
         if (!point_at(p, c, depths, x, y, at)) continue;
         int reached = masu_ref_light_reaches(&ref, at, l, color);
@@ -423,17 +446,22 @@ static uint64_t picture_hash(pictures *p, const masu_camera *c, uint64_t *lit) {
 }
 
 static masu_punctual_light_state lamp_at(double x, double y, double z, float color, float range) {
-    return (masu_punctual_light_state){.position = {x, y, z}, .color = {color, 0.5f * color, 0.25f * color}, .range = range, .radius = 0.01f};
+    return (masu_punctual_light_state){.position = {x, y, z},
+                                       .color = {color, 0.5f * color, 0.25f * color},
+                                       .range = range,
+                                       .radius = 0.01f};
 }
 
 static void a_pane_is_lit_as_by_a_sun_of_the_lights_direction(void **state) {
     (void)state;
-    static const char *const kinds[] = {"\"opacity\": 0.5", "\"opacity\": 0.25, \"blend\": \"additive\"",
+    static const char *const kinds[] = {"\"opacity\": 0.5",
+                                        "\"opacity\": 0.25, \"blend\": \"additive\"",
                                         "\"opacity\": 0.5, \"metallic\": 1, \"coat\": 1"};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         pictures p;
         used = 0;
-        add("{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"rotate\": [90, 0, 0], "
+        add("{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"rotate\": "
+            "[90, 0, 0], "
             "\"material\": {\"roughness\": 0.4, \"base_color\": [0.8, 0.6, 0.4], %s}}], "
             "\"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, \"reflections\": false, "
             "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, ",
@@ -442,7 +470,8 @@ static void a_pane_is_lit_as_by_a_sun_of_the_lights_direction(void **state) {
         bake_scene("pane", json);
         open_pictures(&p, "pane", 96, 64, 1);
         masu_camera c = look(0.5, 0.25, 4, 0, 0, -1, 0.9);
-        masu_punctual_light_state near = lamp_at(1, -0.5, 1, 8, 3), spot = lamp_at(-2, 1, 3, 30, 20);
+        masu_punctual_light_state near = lamp_at(1, -0.5, 1, 8, 3),
+                                  spot = lamp_at(-2, 1, 3, 30, 20);
         spot.spot = 1, spot.inner = 0.2f, spot.outer = 0.5f;
         spot.direction[0] = 2, spot.direction[1] = -1, spot.direction[2] = -3;
         seed = 3;
@@ -462,7 +491,8 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
     pictures p;
     blends = 1;
     used = 0;
-    add("{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 1, \"size_z\": 1}}, \"translate\": [0, -9, 0]}], "
+    add("{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 1, \"size_z\": 1}}, \"translate\": [0, "
+        "-9, 0]}], "
         "\"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
         "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, ");
     add_lights(2, 1, 1, 2);
@@ -473,10 +503,16 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
     lights[1].spot = 1, lights[1].inner = 0.2f, lights[1].outer = 0.6f;
     lights[1].direction[0] = 2, lights[1].direction[1] = -1, lights[1].direction[2] = -2;
     for (uint32_t i = 0; i < 2; i++)
-        assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i], &failure), MASU_OK);
+        assert_int_equal(
+            masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i], &failure),
+            MASU_OK);
     memset(sparks, 0, sizeof sparks);
     for (int far = 0; far < 2; far++) {
-        masu_particle spark = {.half_width = far ? 3 : 0.5f, .color = {0.5f, 1, 0.75f}, .opacity = 1, .edge = 1, .flags = MASU_PARTICLE_LIT};
+        masu_particle spark = {.half_width = far ? 3 : 0.5f,
+                               .color = {0.5f, 1, 0.75f},
+                               .opacity = 1,
+                               .edge = 1,
+                               .flags = MASU_PARTICLE_LIT};
         spark.position[0] = far ? 6.5 : 0.2; /* the right side is at 4.4 */
         sparks[0] = spark;
         double want[3] = {0};
@@ -485,7 +521,10 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
             double l[3], color[3];
             /* behind the particle */
             if (far) lights[i].position[0] = 7.5 + i, r.position[0] = 7.5 + i;
-            if (far) assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i], &failure), MASU_OK);
+            if (far)
+                assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i),
+                                                         &lights[i], &failure),
+                                 MASU_OK);
             masu_ref_light_reaches(&r, spark.position, l, color);
             for (int k = 0; k < 3; k++) want[k] += 0.25 * (double)spark.color[k] * color[k];
         }
@@ -601,7 +640,8 @@ static void bad_values_are_refused_with_a_line(void **state) {
         static const char *const names[] = {"position", "color",     "range", "radius",  "outer",
                                             "inner",    "direction", "spot",  "instance"};
         for (int k = 0; k < 9; k++) {
-            assert_int_equal(masu_punctual_light_set(p.s.m, light, &s[k], &failure), MASU_ERROR_ARGUMENT);
+            assert_int_equal(masu_punctual_light_set(p.s.m, light, &s[k], &failure),
+                             MASU_ERROR_ARGUMENT);
             const masu_detail *d = (&failure);
             if (!strstr(d->text, names[k]) || !strstr(d->text, "light 0:") || strchr(d->text, '\n'))
                 fail_msg("%s %g: %s", names[k], (double)wrong[i], d->text);
@@ -611,9 +651,11 @@ static void bad_values_are_refused_with_a_line(void **state) {
     static const char *const shapes[] = {"shape", "spot", "area_lights", "has_surface"};
     for (int k = 0; k < 4; k++) {
         shaped[k].spot = k == 1;
-        shaped[k].shape = (masu_light_shape[]){(masu_light_shape)4, MASU_SHAPE_SPHERE, MASU_SHAPE_CAPSULE, MASU_SHAPE_SPHERE}[k];
+        shaped[k].shape = (masu_light_shape[]){(masu_light_shape)4, MASU_SHAPE_SPHERE,
+                                               MASU_SHAPE_CAPSULE, MASU_SHAPE_SPHERE}[k];
         shaped[k].has_surface = k == 3;
-        assert_int_equal(masu_punctual_light_set(p.s.m, light, &shaped[k], &failure), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_punctual_light_set(p.s.m, light, &shaped[k], &failure),
+                         MASU_ERROR_ARGUMENT);
         if (!strstr(failure.text, shapes[k]))
             fail_msg("%s: %s", shapes[k], failure.text);
     }
@@ -623,13 +665,15 @@ static void bad_values_are_refused_with_a_line(void **state) {
     none = good;
     none.radius = 0;
     assert_int_equal(masu_punctual_light_set(p.s.m, light, &none, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){light.id + 2}, &good, &failure),
-                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(
+        masu_punctual_light_set(p.s.m, (masu_punctual_light){light.id + 2}, &good, &failure),
+        MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){0}, &good, &failure),
                      MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_set(NULL, light, &good, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_set(p.s.m, light, NULL, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_get(p.s.m, (masu_punctual_light){9}, &is, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_get(p.s.m, (masu_punctual_light){9}, &is, &failure),
+                     MASU_ERROR_ARGUMENT);
     /* The call had no effect. */
     assert_int_equal(masu_punctual_light_get(p.s.m, light, &is, &failure), MASU_OK);
     assert_memory_equal(&is, &good, offsetof(masu_punctual_light_state, outer) + sizeof is.outer);

@@ -91,7 +91,8 @@ static void what_comes_back_is_as_it_was(void **state) {
     draw_frames(&s, FRAMES, pictures[1]);
     assert_int_equal(stats_of(&s, 1).lights_in_view, 1);
     uint32_t lit = 0;
-    for (uint32_t i = 0; i < BYTES; i++) lit += pictures[1][FRAMES - 1][i] > pictures[0][FRAMES - 1][i] + 8;
+    for (uint32_t i = 0; i < BYTES; i++)
+        lit += pictures[1][FRAMES - 1][i] > pictures[0][FRAMES - 1][i] + 8;
     printf("  a lamp that is shown lights %u of %u bytes\n", lit, BYTES);
     assert_true(lit > BYTES / 50);
     show(&s, "lamp", 0);
@@ -99,7 +100,8 @@ static void what_comes_back_is_as_it_was(void **state) {
     put(&s, model_of(&s, "truck"), 40, 0, 0);
     draw_frames(&s, 2 * FRAMES, pictures[1]);
     show(&s, "truck", 1);
-    assert_int_equal(masu_model_set_transform(s.m, model_of(&s, "truck"), truck.rows, &failure), MASU_OK);
+    assert_int_equal(masu_model_set_transform(s.m, model_of(&s, "truck"), truck.rows, &failure),
+                     MASU_OK);
     draw_frames(&s, 3 * FRAMES, pictures[1]);
     assert_int_equal(stats_of(&s, 1).lights_in_view, 0);
     /* Blue noise has other numbers in these frames: reflections differ by their noise, the rest by
@@ -125,7 +127,8 @@ static void what_is_moved_is_as_if_baked_so(void **state) {
     put(&live, model_of(&live, "truck"), 1.5f, 0.25f, -1.0f);
     put(&live, model_of(&live, "pane"), -2.5f, 0.6f, 2.0f);
     show(&live, "lamp", 1);
-    assert_int_equal(masu_model_add(live.m, model_of(&live, "truck"), second, &added, &failure), MASU_OK);
+    assert_int_equal(masu_model_add(live.m, model_of(&live, "truck"), second, &added, &failure),
+                     MASU_OK);
     assert_int_equal(added.id, model_of(&live, "truck.1").id);
     draw_frames(&live, 0, pictures[0]);
     draw_frames(&baked, 0, pictures[1]);
@@ -151,10 +154,12 @@ static void what_is_shown_has_not_moved(void **state) {
     for (uint32_t frame = 0; frame < 3; frame++) {
         const float at[12] = {1, 0, 0, 0.5f, 0, 1, 0, 0.2f * (float)frame, 0, 0, 1, 2.0f};
         if (frame == 0)
-            assert_int_equal(masu_model_add(s.m, model_of(&s, "truck"), at, &added, &failure), MASU_OK);
+            assert_int_equal(masu_model_add(s.m, model_of(&s, "truck"), at, &added, &failure),
+                             MASU_OK);
         else if (frame == 2)
             assert_int_equal(masu_model_set_transform(s.m, added, at, &failure), MASU_OK);
-        const uint16_t *v = draw_image(&s, &(masu_frame_desc){.rung = 0}, MASU_READBACK_VELOCITY, NULL);
+        const uint16_t *v =
+            draw_image(&s, &(masu_frame_desc){.rung = 0}, MASU_READBACK_VELOCITY, NULL);
         double most = 0;
         for (uint32_t i = 0; i < W * H; i++)
             most = worst_of(most, hypot(half_float(v[4 * i]), half_float(v[4 * i + 1])));
@@ -181,11 +186,15 @@ static bool comes_to_rest(masu_switch queries) {
     for (uint32_t frame = 0; frame < 10 + slots; frame++) {
         if (frame < 4) put(&s, truck, 0.3f * (float)frame, 0, 0);
         draw(&s, &(masu_frame_desc){.time = frame / 60.0}, &commands, NULL);
-        const float *at = (const float *)(const void *)(masu_buffer_pointer(&s.m->device, MASU_BUFFER_TRACE_FRAME, frame % slots) + rows);
+        const float *at =
+            (const float *)(const void *)(masu_buffer_pointer(&s.m->device, MASU_BUFFER_TRACE_FRAME,
+                                                              frame % slots) +
+                                          rows);
         for (uint32_t i = 0; i < s.m->plan.scene.trace_instances; i++, at += 24) {
             int same = memcmp(at, at + 12, 12 * sizeof *at) == 0;
             if (frame < 4) differ += !same;
-            else if (frame > 4 && !same) fail_msg("frame %u: instance %u is where it was not", frame, i);
+            else if (frame > 4 && !same)
+                fail_msg("frame %u: instance %u is where it was not", frame, i);
         }
     }
     assert_true(differ > 0);

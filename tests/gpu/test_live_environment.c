@@ -38,7 +38,8 @@ static void rotate_back(quaternion q, const double v[3], double out[3]) {
     for (int k = 0; k < 3; k++)
         t[k] = 2 * (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
     for (int k = 0; k < 3; k++)
-        out[k] = v[k] + q.w * t[k] + u[(k + 1) % 3] * t[(k + 2) % 3] - u[(k + 2) % 3] * t[(k + 1) % 3];
+        out[k] =
+            v[k] + q.w * t[k] + u[(k + 1) % 3] * t[(k + 2) % 3] - u[(k + 2) % 3] * t[(k + 1) % 3];
 }
 
 /* kind 0: a sky with a broad bright side over a ground; 1: a bright horizon; 2: a bright window. */
@@ -50,10 +51,12 @@ static double radiance(int kind, const double d[3], int c) {
     return sky * (d[1] > 0 ? 1 : 0.6);
 }
 
-static void bake(const char *name, int kind, quaternion q, const double factor[3], const char *more) {
+static void bake(const char *name, int kind, quaternion q, const double factor[3],
+                 const char *more) {
     char json[4096], file[64], error[256];
     for (int i = 0; i < WIDE * HIGH; i++) {
-        double polar = (i / WIDE + 0.5) / HIGH * PI, azimuth = (0.5 - (i % WIDE + 0.5) / WIDE) * 2 * PI, d[3];
+        double polar = (i / WIDE + 0.5) / HIGH * PI,
+               azimuth = (0.5 - (i % WIDE + 0.5) / WIDE) * 2 * PI, d[3];
         const double world[3] = {sin(polar) * sin(azimuth), cos(polar), sin(polar) * cos(azimuth)};
         rotate_back(q, world, d);
         for (int c = 0; c < 3; c++) pixels[3 * i + c] = (float)(factor[c] * radiance(kind, d, c));
@@ -63,13 +66,17 @@ static void bake(const char *name, int kind, quaternion q, const double factor[3
     snprintf(json, sizeof json,
              "{\"environment\": {\"file\": \"%s\", \"size\": 128}, \"sun\": {\"intensity\": 0}, "
              "\"ambient_occlusion\": false, %s \"models\": ["
-             "{\"mesh\": {\"sphere\": {\"radius\": 0.9, \"subdivisions\": 5}}, \"translate\": [-2, 0.2, 0], "
+             "{\"mesh\": {\"sphere\": {\"radius\": 0.9, \"subdivisions\": 5}}, \"translate\": [-2, "
+             "0.2, 0], "
              "\"material\": {\"base_color\": [1, 1, 1], \"roughness\": 1, \"specular\": 0}},"
-             "{\"mesh\": {\"sphere\": {\"radius\": 0.9, \"subdivisions\": 5}}, \"translate\": [0, 0.2, 0], "
+             "{\"mesh\": {\"sphere\": {\"radius\": 0.9, \"subdivisions\": 5}}, \"translate\": [0, "
+             "0.2, 0], "
              "\"material\": {\"base_color\": [1, 1, 1], \"roughness\": 0.6, \"metallic\": 1}},"
-             "{\"mesh\": {\"sphere\": {\"radius\": 0.9, \"subdivisions\": 6}}, \"translate\": [2, 0.2, 0], "
+             "{\"mesh\": {\"sphere\": {\"radius\": 0.9, \"subdivisions\": 6}}, \"translate\": [2, "
+             "0.2, 0], "
              "\"material\": {\"base_color\": [1, 1, 1], \"roughness\": 0, \"metallic\": 1}}],"
-             "\"camera\": {\"fov_y\": 45, \"near\": 0.05, \"keys\": [{\"position\": [0, 1, 6], \"target\": "
+             "\"camera\": {\"fov_y\": 45, \"near\": 0.05, \"keys\": [{\"position\": [0, 1, 6], "
+             "\"target\": "
              "[0, 0.2, 0]}]}}",
              file, more);
     bake_scene(name, json);
@@ -140,22 +147,26 @@ static void compare(int kind, quaternion q, const char *more, double most, const
     draw_with(&e, images[1]);
     draw_with(NULL, images[2]);
     close_session(&s);
-    double off = error_of(images[1], images[0], 0, W), before = error_of(images[2], images[0], 0, W);
-    print_message("%s: off by %.4f, the matt ball by %.4f, the mirror by %.4f; unturned %.4f\n", what, off,
-                  error_of(images[1], images[0], 26, 40), error_of(images[1], images[0], 86, 104), before);
+    double off = error_of(images[1], images[0], 0, W),
+           before = error_of(images[2], images[0], 0, W);
+    print_message("%s: off by %.4f, the matt ball by %.4f, the mirror by %.4f; unturned %.4f\n",
+                  what, off, error_of(images[1], images[0], 26, 40),
+                  error_of(images[1], images[0], 86, 104), before);
     assert_true(off <= most);
     assert_true(before > 4 * most);
 }
 
 static void a_rotation_is_that_of_the_picture(void **state) {
     (void)state;
-    compare(0, about(0, 1, 0, 90), "\"reflections\": {}, \"probes\": {\"spacing\": [0.6, 0.6, 0.6]},", 0.003,
+    compare(0, about(0, 1, 0, 90),
+            "\"reflections\": {}, \"probes\": {\"spacing\": [0.6, 0.6, 0.6]},", 0.003,
             "90 degrees about +Y, with probes");
     compare(0, about(0, 1, 0, -37), "", 0.01, "-37 degrees about +Y");
     if (!whole_run()) return;
     compare(0, about(0.6, 0, 0.8, 90), "", 0.02, "tilted by 90 degrees");
     frames = 100;
-    compare(0, about(0, 1, 0, 90), "\"reflections\": {}, \"bounce\": {\"spacing\": 0.7},", 0.01, "with a bounce");
+    compare(0, about(0, 1, 0, 90), "\"reflections\": {}, \"bounce\": {\"spacing\": 0.7},", 0.01,
+            "with a bounce");
     frames = 4;
 }
 
@@ -184,8 +195,9 @@ static void tilted_irradiance_is_off_by_little(void **state) {
                 }
             }
         }
-        print_message("sky %d, tilted by 90 degrees: irradiance off by at most %.4f of the brightest\n", kind,
-                      most / brightest);
+        print_message(
+            "sky %d, tilted by 90 degrees: irradiance off by at most %.4f of the brightest\n", kind,
+            most / brightest);
         worst = fmax(worst, most / brightest);
     }
     assert_true(worst <= 0.021);
@@ -194,7 +206,8 @@ static void tilted_irradiance_is_off_by_little(void **state) {
 static void brightness_and_tint_are_those_of_the_picture(void **state) {
     (void)state;
     static const double twice[3] = {2, 2, 2}, hue[3] = {1, 0.5, 0.25};
-    const masu_environment bright = {.intensity = 2}, tint = {.tint = {1, 0.5f, 0.25f}}, dark = {.intensity = -1};
+    const masu_environment bright = {.intensity = 2}, tint = {.tint = {1, 0.5f, 0.25f}},
+                           dark = {.intensity = -1};
     bake("straight", 0, none, white, "\"reflections\": {},");
     bake("bright", 0, none, twice, "\"reflections\": {},");
     bake("hued", 0, none, hue, "\"reflections\": {},");
@@ -224,8 +237,10 @@ static void brightness_and_tint_are_those_of_the_picture(void **state) {
 /* Values are exact in half floats. */
 static void a_background_changes_the_sky_only(void **state) {
     (void)state;
-    const masu_environment flat = {.background_intensity = -1, .background_color = {0.125f, 0.25f, 0.5f}},
-                           both = {.background_intensity = 0.5f, .background_color = {0.125f, 0, 0}};
+    const masu_environment flat = {.background_intensity = -1,
+                                   .background_color = {0.125f, 0.25f, 0.5f}},
+                           both = {.background_intensity = 0.5f,
+                                   .background_color = {0.125f, 0, 0}};
     bake("straight", 0, none, white, "\"reflections\": {},");
     open_scene("straight", 0);
     draw_with(NULL, images[0]);
@@ -238,15 +253,18 @@ static void a_background_changes_the_sky_only(void **state) {
     close_session(&s);
     uint32_t sky = 0;
     for (uint32_t i = 0; i < W * H; i++) {
-        const uint16_t *plain = images[0] + 4 * i, *is = images[1] + 4 * i, *half = images[2] + 4 * i;
-        int open = half_float(is[0]) == 0.125 && half_float(is[1]) == 0.25 && half_float(is[2]) == 0.5;
+        const uint16_t *plain = images[0] + 4 * i, *is = images[1] + 4 * i,
+                       *half = images[2] + 4 * i;
+        int open =
+            half_float(is[0]) == 0.125 && half_float(is[1]) == 0.25 && half_float(is[2]) == 0.5;
         sky += open;
         if (!open) {
             assert_memory_equal(is, plain, 6);
             assert_memory_equal(half, plain, 6);
         } else {
             for (uint32_t c = 0; c < 3; c++)
-                assert_true(fabs(half_float(half[c]) - 0.5 * half_float(plain[c]) - (c ? 0 : 0.125)) < 0.001);
+                assert_true(fabs(half_float(half[c]) - 0.5 * half_float(plain[c]) -
+                                 (c ? 0 : 0.125)) < 0.001);
         }
     }
     print_message("%u of %u pixels are sky\n", sky, W * H);
@@ -264,9 +282,12 @@ static masu_result frame_with(const masu_environment *e) {
 
 static void what_does_not_apply_is_rejected(void **state) {
     (void)state;
-    static const masu_environment bad[] = {{.intensity = 1.1e6f}, {.tint = {0, 0, 1.001f}},
-                                           {.background_intensity = -1.1e6f}, {.background_color = {-1, 0, 0}},
-                                           {.rotation = {1e-11f, 0, 0, 0}}, {.rotation = {NAN, 0, 0, 0}}};
+    static const masu_environment bad[] = {{.intensity = 1.1e6f},
+                                           {.tint = {0, 0, 1.001f}},
+                                           {.background_intensity = -1.1e6f},
+                                           {.background_color = {-1, 0, 0}},
+                                           {.rotation = {1e-11f, 0, 0, 0}},
+                                           {.rotation = {NAN, 0, 0, 0}}};
     const masu_environment sky = {.intensity = 2}, background = {.background_color = {1, 1, 1}};
     bake("straight", 0, none, white, "");
     open_scene("straight", 1);

@@ -34,7 +34,8 @@ static masu_desc desc_of(const masu_session *s, const masu_session *x, const mas
 }
 
 static masu_frame_desc frame_of(uint32_t n) {
-    return (masu_frame_desc){MASU_FRAME_DESC, .rung = n % RUNGS, .time = 0.05 * n, .time_step = 0.05f};
+    return (masu_frame_desc){MASU_FRAME_DESC, .rung = n % RUNGS, .time = 0.05 * n,
+                             .time_step = 0.05f};
 }
 
 /* A separate renderer of the rendering scene; returns the image of its next frame, the n-th. */
@@ -55,7 +56,9 @@ static void submit(masu_session *s, const masu_commands *step, const masu_comman
     uint32_t count = 0;
     if (step && step->part_count) all[count++] = step->buffer;
     all[count++] = frame->buffer;
-    VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = count, .pCommandBuffers = all};
+    VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                         .commandBufferCount = count,
+                         .pCommandBuffers = all};
     assert_int_equal(vkQueueSubmit(s->host.queue, 1, &info, VK_NULL_HANDLE), VK_SUCCESS);
     assert_int_equal(vkQueueWaitIdle(s->host.queue), VK_SUCCESS);
 }
@@ -76,7 +79,8 @@ static void draw_next(masu_session *s, own_renderer *x, uint32_t n, const masu_c
 }
 
 /* masu_init in the given host memory, without a step yet. */
-static void begin(masu_session *s, own_renderer *x, const masu_desc *desc, void *block, uint64_t bytes) {
+static void begin(masu_session *s, own_renderer *x, const masu_desc *desc, void *block,
+                  uint64_t bytes) {
     masu_desc d = *desc;
     masu_detail detail;
     make_target(s, x, W, H, 1);

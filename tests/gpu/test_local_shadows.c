@@ -37,9 +37,12 @@ static void begin_scene(double ground) {
         "\"material\": {\"roughness\": 1}}", ground, ground);
 }
 
-static void add_box(const char *name, double x, double y, double z, double sx, double sy, double sz, double turn) {
-    add(", {\"mesh\": {\"box\": {\"size\": [%g, %g, %g]}}, \"name\": \"%s\", \"translate\": [%g, %g, %g], "
-        "\"rotate_y\": %g, \"material\": {\"roughness\": 1}}", sx, sy, sz, name, x, y, z, turn);
+static void add_box(const char *name, double x, double y, double z, double sx, double sy, double sz,
+                    double turn) {
+    add(", {\"mesh\": {\"box\": {\"size\": [%g, %g, %g]}}, \"name\": \"%s\", \"translate\": [%g, "
+        "%g, %g], "
+        "\"rotate_y\": %g, \"material\": {\"roughness\": 1}}",
+        sx, sy, sz, name, x, y, z, turn);
 }
 
 static void add_lights(const char *lights) { add("], \"lights\": [%s]}", lights); }
@@ -62,8 +65,8 @@ typedef struct lamps {
 
 enum { SHADOWED, PLAIN, RUNGS };
 
-static void open_lamps(lamps *l, const char *scene, uint32_t width, uint32_t height, const masu_rung *rung,
-                       uint32_t reserve) {
+static void open_lamps(lamps *l, const char *scene, uint32_t width, uint32_t height,
+                       const masu_rung *rung, uint32_t reserve) {
     size_t bytes;
     masu_scene bound;
     memset(l, 0, sizeof *l);
@@ -111,13 +114,16 @@ static const uint16_t *settle(lamps *l, const masu_camera *camera) {
     return hdr;
 }
 
-static double luma(const uint16_t *texel) { return half_float(texel[0]) + half_float(texel[1]) + half_float(texel[2]); }
+static double luma(const uint16_t *texel) {
+    return half_float(texel[0]) + half_float(texel[1]) + half_float(texel[2]);
+}
 
 /* ---- Comparison with exact rays -------------------------------------------------------------- */
 
 static masu_punctual_light_state state_of(const lamps *l, uint32_t light) {
     masu_punctual_light_state s;
-    assert_int_equal(masu_punctual_light_get(l->s.m, masu_punctual_light_at(l->s.m, light), &s, NULL), MASU_OK);
+    assert_int_equal(
+        masu_punctual_light_get(l->s.m, masu_punctual_light_at(l->s.m, light), &s, NULL), MASU_OK);
     return s;
 }
 
@@ -126,15 +132,16 @@ typedef struct hit_point {
     uint32_t triangle;
 } hit_point;
 
-static int point_under(const lamps *l, const masu_camera *c, const double light[3], uint32_t x, uint32_t y,
-                       hit_point *out) {
+static int point_under(const lamps *l, const masu_camera *c, const double light[3], uint32_t x,
+                       uint32_t y, hit_point *out) {
     double f[3], r[3], u[3], up[3] = {0, 1, 0}, d[3], towards[3], t;
     for (int k = 0; k < 3; k++) f[k] = (double)c->forward[k];
     unit3(f);
     cross3(f, up, r);
     unit3(r);
     cross3(r, f, u);
-    double tan_y = tan((double)c->fov_y / 2), a = ((x + 0.5) / l->width * 2 - 1) * tan_y * l->width / l->height;
+    double tan_y = tan((double)c->fov_y / 2),
+           a = ((x + 0.5) / l->width * 2 - 1) * tan_y * l->width / l->height;
     double b = ((y + 0.5) / l->height * 2 - 1) * tan_y;
     for (int k = 0; k < 3; k++) d[k] = f[k] + r[k] * a - u[k] * b;
     int64_t hit = masu_ref_hit(&l->world, c->position, d, 0.05, HUGE_VAL, &t);
@@ -147,7 +154,8 @@ static int point_under(const lamps *l, const masu_camera *c, const double light[
     return masu_ref_normal(&l->world.triangles[hit], towards, out->normal);
 }
 
-static int sees(const lamps *l, const double at[3], const double normal[3], const double light[3], double near) {
+static int sees(const lamps *l, const double at[3], const double normal[3], const double light[3],
+                double near) {
     double from[3], d[3], t;
     for (int k = 0; k < 3; k++) {
         from[k] = at[k] + normal[k] * 1e-4;
@@ -159,15 +167,16 @@ static int sees(const lamps *l, const double at[3], const double normal[3], cons
 
 /* Whether the light's visibility is the same on the point's plane within this number of texels of
  * its face. */
-static int is_clear(const lamps *l, const hit_point *p, const double light[3], double texel, double texels, int seen,
-                    double near) {
+static int is_clear(const lamps *l, const hit_point *p, const double light[3], double texel,
+                    double texels, int seen, double near) {
     double d[3], major = 0;
     for (int k = 0; k < 3; k++) {
         d[k] = p->at[k] - light[k];
         major = fmax(major, fabs(d[k]));
     }
     for (int i = 0; i < 16; i++) {
-        double turn = i * (6.28318530718 / 8), far = texels * texel * major * (i < 8 ? 1 : 0.5), to[3], at[3];
+        double turn = i * (6.28318530718 / 8), far = texels * texel * major * (i < 8 ? 1 : 0.5),
+               to[3], at[3];
         double across[3] = {1, 0, 0}, u[3], v[3];
         if (fabs(d[0]) > 0.7 * major) across[0] = 0, across[1] = 1;
         cross3(d, across, u);
@@ -189,7 +198,8 @@ typedef struct comparison {
 } comparison;
 
 /* Texel width of the light's faces for this camera; now: their previous size, and the new one. */
-static double texel_of(const lamps *l, const masu_camera *c, double tangent, uint32_t most, uint32_t *now) {
+static double texel_of(const lamps *l, const masu_camera *c, double tangent, uint32_t most,
+                       uint32_t *now) {
     masu_punctual_light_state s = state_of(l, 0);
     double d[3], pixels = 0.5 * l->height / tan((double)c->fov_y / 2);
     for (int k = 0; k < 3; k++) d[k] = s.position[k] - c->position[k];
@@ -208,7 +218,8 @@ static comparison compare_rays(lamps *l, const masu_camera *c, double texel, con
     for (uint32_t i = 0; i < l->width * l->height; i++) {
         hit_point p;
         double without = luma(plain + 4 * i);
-        if (!(without > 1e-3) || !point_under(l, c, s.position, i % l->width, i / l->width, &p)) continue;
+        if (!(without > 1e-3) || !point_under(l, c, s.position, i % l->width, i / l->width, &p))
+            continue;
         double seen = luma(hdr + 4 * i) / without;
         int truth = sees(l, p.at, p.normal, s.position, near);
         sum.lit++;
@@ -218,7 +229,9 @@ static comparison compare_rays(lamps *l, const masu_camera *c, double texel, con
         double most = fmax(size[0], fmax(size[1], size[2]));
         int seam = 0;
         for (int k = 0; k < 3; k++) {
-            double second = fmin(size[k], size[(k + 1) % 3]) > size[(k + 2) % 3] ? fabs(size[k] - size[(k + 1) % 3]) : 9;
+            double second = fmin(size[k], size[(k + 1) % 3]) > size[(k + 2) % 3]
+                                ? fabs(size[k] - size[(k + 1) % 3])
+                                : 9;
             seam |= second < 2 * texel * most;
         }
         sum.seam += seam != 0;
@@ -240,12 +253,15 @@ static void add_room(void) {
         char name[16];
         snprintf(name, sizeof name, "box%d", i);
         double turn = i * 2.399963, far = 1.2 + 0.28 * i, high = random_between(&seed, 0.3, 2.2);
-        add_box(name, far * cos(turn), high / 2 + (i % 5 == 0 ? 0.4 : 0), far * sin(turn), random_between(&seed, 0.2, 1),
-                high, random_between(&seed, 0.2, 1), random_between(&seed, 0, 90));
+        add_box(name, far * cos(turn), high / 2 + (i % 5 == 0 ? 0.4 : 0), far * sin(turn),
+                random_between(&seed, 0.2, 1), high, random_between(&seed, 0.2, 1),
+                random_between(&seed, 0, 90));
     }
     for (int i = 0; i < 3; i++) {
-        add(", {\"mesh\": {\"sphere\": {\"subdivisions\": %d}}, \"scale\": 0.6, \"translate\": [%g, 0.6, %g], "
-            "\"material\": {\"roughness\": 1}}", 3 + i, 1.5 * i - 2.5, 2.5 - i);
+        add(", {\"mesh\": {\"sphere\": {\"subdivisions\": %d}}, \"scale\": 0.6, \"translate\": "
+            "[%g, 0.6, %g], "
+            "\"material\": {\"roughness\": 1}}",
+            3 + i, 1.5 * i - 2.5, 2.5 - i);
     }
     add_box("wall", 0, 2, -7, 16, 4, 0.3, 0);
     add_box("side", -7, 2, 0, 0.3, 4, 16, 0);
@@ -259,13 +275,19 @@ static void visibility_is_that_of_rays(void **state) {
         double tangent;
         uint32_t most; /* texels of a face */
     } cases[] = {
-        {"point", "{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 14}", 1, 256},
+        {"point",
+         "{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 14}", 1,
+         256},
         {"spot of 40",
-         "{\"type\": \"spot\", \"position\": [4, 4, 5], \"direction\": [-1, -0.8, -1.1], \"outer\": 40, "
-         "\"intensity\": 30, \"range\": 20}", 0.8391, 512},
+         "{\"type\": \"spot\", \"position\": [4, 4, 5], \"direction\": [-1, -0.8, -1.1], "
+         "\"outer\": 40, "
+         "\"intensity\": 30, \"range\": 20}",
+         0.8391, 512},
         {"spot of 75, cube",
-         "{\"type\": \"spot\", \"position\": [0.3, 3, 0], \"direction\": [0.2, -1, 0], \"outer\": 75, "
-         "\"intensity\": 12, \"range\": 14}", 1, 256},
+         "{\"type\": \"spot\", \"position\": [0.3, 3, 0], \"direction\": [0.2, -1, 0], \"outer\": "
+         "75, "
+         "\"intensity\": 12, \"range\": 14}",
+         1, 256},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         lamps l;
@@ -275,7 +297,8 @@ static void visibility_is_that_of_rays(void **state) {
         add_lights(cases[i].light);
         bake_scene("lamp_room", json);
         open_lamps(&l, "lamp_room", 200, 125, NULL, 0);
-        masu_camera views[] = {look(4.5, 4.5, 6, -4, -4.2, -6, 1.1), look(-5, 2, 5, 5, -1.5, -6, 1.2)};
+        masu_camera views[] = {look(4.5, 4.5, 6, -4, -4.2, -6, 1.1),
+                               look(-5, 2, 5, 5, -1.5, -6, 1.2)};
         uint32_t size = 0;
         for (size_t v = 0; v < (i == 1 ? 2 : 1); v++) {
             double texel = texel_of(&l, &views[v], cases[i].tangent, cases[i].most, &size);
@@ -310,15 +333,20 @@ static void expect_no_acne(const plane_case *p) {
     for (int i = 0; i < 17 * 17 && p->tiles; i++) {
         int x = i % 17 - 8, z = i / 17 - 8;
         if (x || z)
-            add(", {\"mesh\": {\"plane\": {\"size_x\": 2, \"size_z\": 2}}, \"translate\": [%d, 0, %d], "
-                "\"material\": {\"roughness\": 1}}", 2 * x, 2 * z);
+            add(", {\"mesh\": {\"plane\": {\"size_x\": 2, \"size_z\": 2}}, \"translate\": [%d, 0, "
+                "%d], "
+                "\"material\": {\"roughness\": 1}}",
+                2 * x, 2 * z);
     }
-    snprintf(text, sizeof text, "{\"type\": \"%s\", \"position\": [0.1, %g, 0.2], \"intensity\": 40, \"range\": 25%s}",
-             p->spot ? "spot" : "point", p->height, p->spot ? ", \"direction\": [1, -0.5, 0.3], \"outer\": 55" : "");
+    snprintf(text, sizeof text,
+             "{\"type\": \"%s\", \"position\": [0.1, %g, 0.2], \"intensity\": 40, \"range\": 25%s}",
+             p->spot ? "spot" : "point", p->height,
+             p->spot ? ", \"direction\": [1, -0.5, 0.3], \"outer\": 55" : "");
     add_lights(text);
     bake_scene("lamp_plane", json);
     open_lamps(&l, "lamp_plane", 200, 125, &rung, 0);
-    masu_camera c = p->tiles ? look(-1.5, 1.2, 1, 1.6, -0.9, -0.8, 1.3) : look(-8, 5, 3, 8, -4.4, -3, 1.2);
+    masu_camera c =
+        p->tiles ? look(-1.5, 1.2, 1, 1.6, -0.9, -0.8, 1.3) : look(-8, 5, 3, 8, -4.4, -3, 1.2);
     memcpy(plain, take(&l, &c, PLAIN), sizeof plain);
     const uint16_t *hdr = settle(&l, &c);
     assert_int_equal(l.stats.local_shadow_lights, 1);
@@ -327,8 +355,11 @@ static void expect_no_acne(const plane_case *p) {
     double least = 1, angles[2] = {90, 0};
     for (uint32_t i = 0; i < l.width * l.height; i++) {
         hit_point at;
-        if (!(luma(plain + 4 * i) > 1e-4) || !point_under(&l, &c, s.position, i % l.width, i / l.width, &at)) continue;
-        double d[3] = {at.at[0] - s.position[0], at.at[1] - s.position[1], at.at[2] - s.position[2]};
+        if (!(luma(plain + 4 * i) > 1e-4) ||
+            !point_under(&l, &c, s.position, i % l.width, i / l.width, &at))
+            continue;
+        double d[3] = {at.at[0] - s.position[0], at.at[1] - s.position[1],
+                       at.at[2] - s.position[2]};
         double angle = acos(fabs(d[1]) / sqrt(dot3(d, d))) * (180 / 3.14159265358979);
         if (angle > 89.0) continue;
         double seen = luma(hdr + 4 * i) / luma(plain + 4 * i);
@@ -336,8 +367,8 @@ static void expect_no_acne(const plane_case *p) {
         lit++, dark += seen < 0.99;
         least = fmin(least, seen);
     }
-    print_message("%-18s %u lit pixels at %.1f to %.1f degrees, below 0.99: %u, the least %.3f\n", p->what, lit, angles[0],
-                  angles[1], dark, least);
+    print_message("%-18s %u lit pixels at %.1f to %.1f degrees, below 0.99: %u, the least %.3f\n",
+                  p->what, lit, angles[0], angles[1], dark, least);
     assert_true(lit > 1500 && angles[1] > 80);
     assert_int_equal(dark, 0);
     close_lamps(&l);
@@ -367,11 +398,14 @@ static void faces_that_look_away_are_dark(void **state) {
     lamps l;
     masu_camera c = look(0, 1, 3, 0, 0, -1, 0.5);
     begin_scene(0.1);
-    add(", {\"mesh\": {\"box\": {\"size\": [1, 1, 0.2]}}, \"translate\": [0, 1, 0], \"material\": {\"roughness\": 1, "
+    add(", {\"mesh\": {\"box\": {\"size\": [1, 1, 0.2]}}, \"translate\": [0, 1, 0], \"material\": "
+        "{\"roughness\": 1, "
         "\"normal_map\": \"lean_right.png\"}}");
-    assert_int_equal(shell("cp %s/textures/lean_right.png %s", build_dir(), in_scratch("lean_right.png")), 0);
-    add_lights("{\"type\": \"point\", \"position\": [3, 1, -0.4], \"intensity\": 40, \"range\": 9}, "
-               "{\"type\": \"point\", \"position\": [-3, 1, -0.4], \"intensity\": 40, \"range\": 9}");
+    assert_int_equal(
+        shell("cp %s/textures/lean_right.png %s", build_dir(), in_scratch("lean_right.png")), 0);
+    add_lights(
+        "{\"type\": \"point\", \"position\": [3, 1, -0.4], \"intensity\": 40, \"range\": 9}, "
+        "{\"type\": \"point\", \"position\": [-3, 1, -0.4], \"intensity\": 40, \"range\": 9}");
     bake_scene("lamp_behind", json);
     open_lamps(&l, "lamp_behind", 64, 40, NULL, 0);
     memcpy(plain, take(&l, &c, PLAIN), (size_t)l.width * l.height * 8);
@@ -393,12 +427,15 @@ static void bake_street(void) {
     begin_scene(60);
     add_room();
     add_box("car", 0, 0.5, 3, 1, 1, 2, 0);
-    add_lights("{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 9}, "
-               "{\"type\": \"spot\", \"position\": [4, 4, 5], \"direction\": [-1, -0.8, -1.1], \"outer\": 40, "
-               "\"intensity\": 30, \"range\": 20}, "
-               "{\"type\": \"point\", \"position\": [-4, 1.5, 3], \"intensity\": 6, \"range\": 8}, "
-               "{\"type\": \"spot\", \"position\": [0, 0.1, 1.2], \"direction\": [0, -0.1, 1], \"outer\": 25, "
-               "\"instance\": \"car\", \"intensity\": 20, \"range\": 15}");
+    add_lights(
+        "{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 9}, "
+        "{\"type\": \"spot\", \"position\": [4, 4, 5], \"direction\": [-1, -0.8, -1.1], \"outer\": "
+        "40, "
+        "\"intensity\": 30, \"range\": 20}, "
+        "{\"type\": \"point\", \"position\": [-4, 1.5, 3], \"intensity\": 6, \"range\": 8}, "
+        "{\"type\": \"spot\", \"position\": [0, 0.1, 1.2], \"direction\": [0, -0.1, 1], \"outer\": "
+        "25, "
+        "\"instance\": \"car\", \"intensity\": 20, \"range\": 15}");
     bake_scene("lamp_street", json);
 }
 
@@ -413,8 +450,10 @@ static void expect_kept(uint32_t atlas) {
     for (int f = 0; f < 90; f++) {
         double t = f / 90.0;
         masu_camera c = look(5 * t, 4.5, 7, -4 + 3 * sin(20 * t), -3, -6, 1.1);
-        if (f % 3 && f < 70) move_instance(&l.s, "car", (float)(6 * t - 3), 0.5f, (float)(3 + sin(9 * t)), 1);
-        if (f % 20 < 5) move_instance(&l.s, "box3", (float)(2 * cos(f)), 0.5f, (float)(2 * sin(f)), 1);
+        if (f % 3 && f < 70)
+            move_instance(&l.s, "car", (float)(6 * t - 3), 0.5f, (float)(3 + sin(9 * t)), 1);
+        if (f % 20 < 5)
+            move_instance(&l.s, "box3", (float)(2 * cos(f)), 0.5f, (float)(2 * sin(f)), 1);
         take(&l, &c, SHADOWED);
         assert_true(l.stats.local_shadow_faces <= 4);
         if (most < l.stats.local_shadow_faces) most = l.stats.local_shadow_faces;
@@ -461,8 +500,9 @@ static void shadows_come_and_go_by_steps(void **state) {
     masu_camera c = look(5, 4.5, 7, -4, -3, -6, 1.1);
     begin_scene(60);
     add_room();
-    add_lights("{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 14}, "
-               "{\"type\": \"point\", \"position\": [20, 2, 30], \"intensity\": 9, \"range\": 5}");
+    add_lights(
+        "{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 14}, "
+        "{\"type\": \"point\", \"position\": [20, 2, 30], \"intensity\": 9, \"range\": 5}");
     bake_scene("lamp_pair", json);
     open_lamps(&l, "lamp_pair", 96, 60, &rung, 0);
     memcpy(plain, take(&l, &c, PLAIN), (size_t)l.width * l.height * 8);
@@ -473,7 +513,9 @@ static void shadows_come_and_go_by_steps(void **state) {
     for (int f = 0; f < 125; f++) {
         if (f == 35 || f == 80) {
             away.color[0] = f == 35 ? 1e6f : 1.0f;
-            assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 1), &away, NULL), MASU_OK);
+            assert_int_equal(
+                masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 1), &away, NULL),
+                MASU_OK);
         }
         const uint16_t *hdr = take(&l, &c, SHADOWED);
         assert_int_equal(l.stats.local_shadow_lights <= 1, 1);
@@ -523,7 +565,8 @@ static void a_point_that_moves_keeps_its_walls(void **state) {
     for (int f = 0; f < 24; f++) {
         lamp.position[0] = 0.6 * sin(0.3 * f);
         lamp.position[2] = 0.4 * sin(0.5 * f);
-        assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 0), &lamp, NULL), MASU_OK);
+        assert_int_equal(
+            masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 0), &lamp, NULL), MASU_OK);
         const uint16_t *hdr = take(&l, &c, SHADOWED);
         assert_true(l.stats.local_shadow_faces <= 4);
         waited += l.stats.local_shadow_waiting != 0;
@@ -556,7 +599,8 @@ static void lights_come_and_go(void **state) {
     open_lamps(&l, "lamp_street", 64, 40, NULL, ROOM);
     for (uint32_t n = 0; n < changes; n++) {
         uint32_t at = (uint32_t)random_between(&seed, 0, ROOM - 0.01);
-        if (handles[at].id) assert_int_equal(masu_punctual_light_remove(l.s.m, handles[at], NULL), MASU_OK);
+        if (handles[at].id)
+            assert_int_equal(masu_punctual_light_remove(l.s.m, handles[at], NULL), MASU_OK);
         masu_punctual_light_state s = {.range = (float)random_between(&seed, 1, 12),
                                        .radius = 0.01f,
                                        .spot = n % 3 == 0,
@@ -584,14 +628,17 @@ static void nothing_is_planned_where_no_light_casts(void **state) {
         masu_plan_info plan;
         char text[200];
         begin_scene(20);
-        snprintf(text, sizeof text, "{\"type\": \"point\", \"position\": [0, 2, 0], \"intensity\": 5, \"shadows\": %s}",
-                 casts ? "true" : "false");
+        snprintf(
+            text, sizeof text,
+            "{\"type\": \"point\", \"position\": [0, 2, 0], \"intensity\": 5, \"shadows\": %s}",
+            casts ? "true" : "false");
         add_lights(text);
         bake_scene("lamp_off", json);
         open_lamps(&l, "lamp_off", 16, 16, NULL, 0);
         masu_plan_of(l.s.m, &plan);
         for (uint32_t i = 0; i < plan.pass_count; i++) {
-            if (strncmp(plan.passes[i].name, "local_shadow", 12) == 0 && strcmp(plan.passes[i].name, "local_shadow_sdf") != 0)
+            if (strncmp(plan.passes[i].name, "local_shadow", 12) == 0 &&
+                strcmp(plan.passes[i].name, "local_shadow_sdf") != 0)
                 assert_int_equal(plan.passes[i].active, casts ? 1u << SHADOWED : 0);
         }
         uint64_t bytes = 0;

@@ -36,7 +36,8 @@ static masu_camera path(uint32_t frame) {
     double t = frame;
     return (masu_camera){
         .position = {36.0 * sin(t * 0.05), 1.5 + 14.0 * (frame % 50 > 40), 33.0 * sin(t * 0.031)},
-        .forward = {(float)cos(t * 0.37), (float)(0.4 * sin(t * 0.23)) - 0.2f, (float)sin(t * 0.37)},
+        .forward = {(float)cos(t * 0.37), (float)(0.4 * sin(t * 0.23)) - 0.2f,
+                    (float)sin(t * 0.37)},
         .fov_y = 0.4f + 1.2f * (float)(frame % 7) / 7.0f};
 }
 
@@ -74,7 +75,8 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
         if (moving) {
             float t = (float)frame;
             move_instance(s, "ball17", 20.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
-            move_instance(s, "large2", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, frame % 20 < 10 ? 1.5f : 0.1f);
+            move_instance(s, "large2", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f,
+                          frame % 20 < 10 ? 1.5f : 0.1f);
             move_instance(s, "wall1", 20.0f * sinf(t * 0.11f), 0.0f, 20.0f, 2.0f);
         }
         for (uint32_t way = 0; way < WAYS; way++) {

@@ -112,7 +112,8 @@ static void the_sun_lights_as_the_formulas_say(void **state) {
                               .sky_horizon = {0, 0, 0}};
     masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light};
     open_scene("test_scaled_field", 0);
-    const uint16_t *hdr = (const uint16_t *)draw_image(&s, &frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
+    const uint16_t *hdr =
+        (const uint16_t *)draw_image(&s, &frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
     static const double albedo[3] = {0.25, 0.5, 1.0};
     double n_l = 0.8, alpha = 0.25, n_h = 0.8 + 1;
     double length = sqrt(0.6 * 0.6 + 1.8 * 1.8);
@@ -124,7 +125,8 @@ static void the_sun_lights_as_the_formulas_say(void **state) {
         double sun =
             (double)light.sun_color[c] * n_l * (albedo[c] * (1 - fresnel) + fresnel * lobe);
         double ambient = (double)light.ambient[c] * (albedo[c] + 0.04 * 0.5);
-        assert_float_equal((float)half_float(hdr[c]), (float)(sun + ambient), (float)(0.05 * (sun + ambient)));
+        assert_float_equal((float)half_float(hdr[c]), (float)(sun + ambient),
+                           (float)(0.05 * (sun + ambient)));
     }
     /* The same light from behind leaves only the ambient light. */
     masu_light behind = light;

@@ -200,7 +200,8 @@ static uint32_t image_of(const masu_session *s, VkImage image) {
 static void an_image_waits_for_those_that_had_its_bytes(void **state) {
     (void)state;
     const VkAccessFlags writes = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
-                                 VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+                                 VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+                                 VK_ACCESS_TRANSFER_WRITE_BIT;
     masu_session s;
     masu_session_desc d = test_desc("test_live", W, H);
     d.desc.rung_count = 2;
@@ -224,10 +225,13 @@ static void an_image_waits_for_those_that_had_its_bytes(void **state) {
             uint32_t other = image_of(&s, before->image.image);
             if (before->cmd != n->cmd || !other || other == own || seen[other]) continue;
             const masu_image_plan *there = &s.m->plan.images[other];
-            if (here->offset >= there->offset + there->bytes || there->offset >= here->offset + here->bytes) continue;
+            if (here->offset >= there->offset + there->bytes ||
+                there->offset >= here->offset + here->bytes)
+                continue;
             seen[other] = 1;
             waits++;
-            if (!(n->from & before->to)) fail_msg("image %u does not wait for image %u", own, other);
+            if (!(n->from & before->to))
+                fail_msg("image %u does not wait for image %u", own, other);
             if (!(before->image.dstAccessMask & writes)) continue;
             written++;
             if (!(n->image.srcAccessMask & before->image.dstAccessMask & writes))

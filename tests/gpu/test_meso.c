@@ -72,7 +72,8 @@ static void the_gpu_says_what_the_model_says(void **unused) {
     for (int i = 0; i < MANY; i++) {
         const test_case *c = &cases[i];
         masu_meso_curves curves;
-        double *number = curves.tilt; /* the struct is an array of numbers: checked in tools/meso/fit.c */
+        double *number =
+            curves.tilt; /* the struct is an array of numbers: checked in tools/meso/fit.c */
         double all[MASU_MESO_NUMBERS];
         for (uint32_t k = 0; k < MASU_MESO_NUMBERS; k++) all[k] = (double)c->curves[k];
         memcpy(number, all, sizeof curves);
@@ -111,7 +112,8 @@ static void the_widest_numbers_give_finite_surfaces(void **unused) {
     for (int i = 0; i < MANY; i++) {
         test_case *c = &cases[i];
         static const float limit[] = {-1000, -1, -1e-30f, 0, 1e-40f, 1, 1000};
-        for (uint32_t k = 0; k < MASU_MESO_NUMBERS; k++) c->curves[k] = limit[random_word(&state) % 7];
+        for (uint32_t k = 0; k < MASU_MESO_NUMBERS; k++)
+            c->curves[k] = limit[random_word(&state) % 7];
         c->curves[3] = random_word(&state) & 1 ? 1 : 0;
         for (uint32_t k = 11; k < 16; k += 4) c->curves[k] = random_word(&state) & 1 ? 4 : 0;
         direction(c->view);

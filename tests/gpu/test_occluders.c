@@ -70,7 +70,8 @@ static masu_stats_info compare(masu_session *s, const masu_camera *c, int cut, c
 
 /* Orthonormal vectors, by rotation about the three axes. */
 static void turn(double out[3][3]) {
-    double a[3] = {random_between(&seed, 0, 6.3), random_between(&seed, 0, 6.3), random_between(&seed, 0, 6.3)};
+    double a[3] = {random_between(&seed, 0, 6.3), random_between(&seed, 0, 6.3),
+                   random_between(&seed, 0, 6.3)};
     if (random_between(&seed, 0, 1) < 0.3) a[0] = a[1] = a[2] = 0;
     memset(out, 0, 9 * sizeof out[0][0]);
     for (int i = 0; i < 3; i++) out[i][i] = 1;
@@ -130,10 +131,13 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
         for (uint32_t i = 0; i < THINGS; i++)
             place_random(&s, "thing", i, space, space * 0.2, center);
         for (uint32_t view = 0; view < 3; view++) {
-            masu_camera c = {.fov_y = (float)random_between(&seed, 0.2, view ? 1.5 : 2.8),
-                             .near_distance = (float)(view == 1 ? random_between(&seed, 0.1, space * 0.3) : 0.05)};
+            masu_camera c = {
+                .fov_y = (float)random_between(&seed, 0.2, view ? 1.5 : 2.8),
+                .near_distance =
+                    (float)(view == 1 ? random_between(&seed, 0.1, space * 0.3) : 0.05)};
             for (int k = 0; k < 3; k++) {
-                c.position[k] = center[k] + random_between(&seed, -1.5, 1.5) * space * (view ? 1.0 : 0.3);
+                c.position[k] =
+                    center[k] + random_between(&seed, -1.5, 1.5) * space * (view ? 1.0 : 0.3);
                 c.forward[k] = (float)(center[k] - c.position[k] +
                                        random_between(&seed, -0.5, 0.5) * space);
             }
@@ -185,7 +189,8 @@ static void gaps_narrower_than_a_texel_are_looked_through(void **state) {
     for (uint32_t n = 0; n < gaps; n++) {
         seed = n;
         double gap = n % 8 == 0 ? -0.01 : random_between(&seed, 0.0, 1.0) * 20.0 / 192.0;
-        double at = random_between(&seed, -6.0, 6.0), depth_of = n % 2 ? 0.0 : random_between(&seed, 0.0, 3.0);
+        double at = random_between(&seed, -6.0, 6.0),
+               depth_of = n % 2 ? 0.0 : random_between(&seed, 0.0, 3.0);
         double height = 30.0, width = 6.0;
         int lying = n % 3 == 2; /* one above the other */
         double low = at - gap / 2 - width / 2, high = at + gap / 2 + width / 2;

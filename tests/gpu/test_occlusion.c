@@ -31,7 +31,8 @@ static void bake_with(const char *name, const char *options) {
     char path[256], root[1024];
     const char *folder = "scenes";
     snprintf(path, sizeof path, "%s/%s.json", folder, name);
-    if (access(path, R_OK)) snprintf(path, sizeof path, "%s/%s.json", folder = "tests/scenes", name);
+    if (access(path, R_OK))
+        snprintf(path, sizeof path, "%s/%s.json", folder = "tests/scenes", name);
     char *text = read_file(path, NULL);
     static const char before[] = "\"source\": \"",
                       off[] = "\"shadows\": false, \"ambient_occlusion\": false";
@@ -42,8 +43,8 @@ static void bake_with(const char *name, const char *options) {
     while (*last != ',') last--;
     *last = ' ';
     assert_non_null(getcwd(root, sizeof root));
-    snprintf(json, sizeof json, "%.*s%s%s%s/%s/%s", (int)(source - text), text, options, before, root,
-             folder, source + strlen(before));
+    snprintf(json, sizeof json, "%.*s%s%s%s/%s/%s", (int)(source - text), text, options, before,
+             root, folder, source + strlen(before));
     free(text);
     bake_scene(name, json);
 }
@@ -132,9 +133,12 @@ static const struct {
     double radius; /* of the sun, degrees */
     double sun, sun_most, ambient, ambient_most;
     enum { EVERYWHERE, FIRST_DRIVER, LONG_RUN } when;
-} stated[] = {{"spheres", 0.27, 0.02, 0.4, 0.03, 0.2, FIRST_DRIVER}, {"spheres", 2, 0.015, 0.2, 0.03, 0.2, LONG_RUN},
-              {"city", 0.27, 0.05, 0.9, 0.05, 0.4, LONG_RUN},        {"city", 2, 0.03, 0.3, 0.05, 0.4, LONG_RUN},
-              {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4, LONG_RUN},   {"blobs", 2, 0.03, 0.3, 0.06, 0.4, LONG_RUN},
+} stated[] = {{"spheres", 0.27, 0.02, 0.4, 0.03, 0.2, FIRST_DRIVER},
+              {"spheres", 2, 0.015, 0.2, 0.03, 0.2, LONG_RUN},
+              {"city", 0.27, 0.05, 0.9, 0.05, 0.4, LONG_RUN},
+              {"city", 2, 0.03, 0.3, 0.05, 0.4, LONG_RUN},
+              {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4, LONG_RUN},
+              {"blobs", 2, 0.03, 0.3, 0.06, 0.4, LONG_RUN},
               {"tunnel", 0.27, 0.02, 0.3, 0.05, 0.4, EVERYWHERE},
               /* So many parts that each block of pixels lists only a few: a part missing in a list
                * is an error here. */
@@ -150,7 +154,8 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         if (stated[i].when == FIRST_DRIVER && !whole_run()) continue;
         char options[256], path[256], error[ERROR_SIZE];
         snprintf(options, sizeof options,
-                 "\"shadows\": {\"sun_radius\": %g}, \"ambient_occlusion\": {}, ", stated[i].radius);
+                 "\"shadows\": {\"sun_radius\": %g}, \"ambient_occlusion\": {}, ",
+                 stated[i].radius);
         bake_with(name, options);
         if (shell("test -e %s/%s.so || { %s/bin/masu-sdfc %s/%s.sdf --c %s/%s.c --quiet && "
                   "%s -std=c11 -O2 -w -shared -fPIC -o %s/%s.so %s/%s.c -lm; }",
@@ -178,8 +183,9 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         print_message("%-8s %.2f: sun %.3f most %.2f wrong %u of %u, ambient %.3f most %.2f of %u, "
                       "evaluations a pixel: march %.1f sun %.1f ambient %.1f, open %llu\n",
                       name, stated[i].radius, rmse(&sun), sun.most, sun.wrong, sun.count,
-                      rmse(&ambient), ambient.most, ambient.count, (double)stats.sdf_evals / (W * H),
-                      (double)stats.shadow_evals / (W * H), (double)stats.occlusion_evals / (W * H),
+                      rmse(&ambient), ambient.most, ambient.count,
+                      (double)stats.sdf_evals / (W * H), (double)stats.shadow_evals / (W * H),
+                      (double)stats.occlusion_evals / (W * H),
                       (unsigned long long)stats.shadow_unconverged);
         assert_true(sun.count > 60 && ambient.count > 80);
         failed |= !(rmse(&sun) <= stated[i].sun && sun.most <= stated[i].sun_most);
@@ -218,8 +224,9 @@ static const char *const hard = "\"shadows\": {}, \"ambient_occlusion\": {}";
 static void nothing_shadows_itself(void **state) {
     (void)state;
     static const double scales[] = {1, 1000};
-    static const char *const fields[] = {"part a = plane((0, 1, 0), 0);", "part a = sphere(2 * k);",
-                                         "part a = rotate_euler((0.3, 0.5, 0.2), box((k, 2 * k, k)));"};
+    static const char *const fields[] = {
+        "part a = plane((0, 1, 0), 0);", "part a = sphere(2 * k);",
+        "part a = rotate_euler((0.3, 0.5, 0.2), box((k, 2 * k, k)));"};
     for (int i = 0; i < 6; i++) {
         const double scale = scales[i % 2];
         /* Otherwise each field at one size; on drivers after the first two fields only: each takes
@@ -227,12 +234,13 @@ static void nothing_shadows_itself(void **state) {
         if ((i == 0 || i == 3 || i == 4) && !long_run()) continue;
         if (i == 1 && !whole_run()) continue;
         char options[128];
-        snprintf(options, sizeof options, "\"shadows\": {}, \"ambient_occlusion\": {\"radius\": %g}",
-                 scale);
+        snprintf(options, sizeof options,
+                 "\"shadows\": {}, \"ambient_occlusion\": {\"radius\": %g}", scale);
         bake_sdf("alone", fields[i / 2], "", plain_sun, scale, options);
         open_scene("alone", 256, 192);
         draw_once();
-        const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION), *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
+        const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION),
+                       *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
         const float *depths = read_image(&s, 0, MASU_READBACK_DEPTH);
         uint32_t looked = 0, dark = 0, closed = 0;
         for (uint32_t k = 0; k < 256 * 192; k++) {
@@ -340,7 +348,8 @@ static void extremes_give_finite_pixels(void **state) {
     static const char *const options[] = {
         "\"shadows\": {\"sun_radius\": 0, \"distance\": 1e15}, \"ambient_occlusion\": {\"radius\": "
         "1e6}, ",
-        "\"shadows\": {\"sun_radius\": 20, \"distance\": 1e-3}, \"ambient_occlusion\": {\"radius\": "
+        "\"shadows\": {\"sun_radius\": 20, \"distance\": 1e-3}, \"ambient_occlusion\": "
+        "{\"radius\": "
         "1e-3}, "};
     static const char *const scenes[] = {"test_broken_field", "spheres", "test_both"};
     for (int i = 0; i < 6; i++) {

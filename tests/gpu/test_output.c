@@ -21,7 +21,8 @@ static masu_session_desc sky_desc(uint32_t width, uint32_t height) {
 }
 
 static void draw_sky(const float zenith[3], const float horizon[3], uint32_t rung, uint8_t *rgba) {
-    static const masu_camera up = {.position = {0, 1000, 0}, .forward = {0, 0.5f, 1}, .fov_y = 0.7f};
+    static const masu_camera up = {
+        .position = {0, 1000, 0}, .forward = {0, 0.5f, 1}, .fov_y = 0.7f};
     masu_light light = {.sun_direction = {0, -1, 0}, .exposure = 1};
     masu_frame_desc frame = {.camera = &up, .light = &light, .rung = rung};
     masu_commands commands;
@@ -163,10 +164,14 @@ static void assert_target(const target_case *t, float scale) {
                          t->encoding != MASU_ENCODING_SRGB;
             /* Half floats before EASU, 10 bits after it: a quarter of a step more. */
             int ten = scale < 1 && bytes_of(t->format) == 4 && step[c] < 1 / 1000.0;
-            double allowed = twice ? 0.505 + 0.5 / 1023 / step[c] : linear ? 4 : ten ? 0.77 : bytes_of(t->format) == 8 ? 1.01 : 0.505;
+            double allowed = twice                      ? 0.505 + 0.5 / 1023 / step[c]
+                             : linear                   ? 4
+                             : ten                      ? 0.77
+                             : bytes_of(t->format) == 8 ? 1.01
+                                                        : 0.505;
             if (!(off <= allowed)) {
-                fail_msg("%s, scale %g, color %d, channel %d: %g, should be %g: %g steps off", t->name,
-                         (double)scale, i, c, got[c], expected(t, colors[i], c), off);
+                fail_msg("%s, scale %g, color %d, channel %d: %g, should be %g: %g steps off",
+                         t->name, (double)scale, i, c, got[c], expected(t, colors[i], c), off);
             }
             worst = worst_of(worst, off);
         }
@@ -182,7 +187,8 @@ static void every_target_gets_its_encoding(void **state) {
     uint8_t has[sizeof targets / sizeof *targets];
     probe.no_renderer = true;
     open_session(&s, &probe);
-    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) has[i] = (uint8_t)has_format(&targets[i]);
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++)
+        has[i] = (uint8_t)has_format(&targets[i]);
     close_session(&s);
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
         if (!has[i]) {
@@ -190,7 +196,8 @@ static void every_target_gets_its_encoding(void **state) {
             continue;
         }
         assert_target(&targets[i], 1.0f);
-        if (i == 0 || i == 5 || i == 7 || i == 8 || i == 11 || i == 14) assert_target(&targets[i], 0.5f);
+        if (i == 0 || i == 5 || i == 7 || i == 8 || i == 11 || i == 14)
+            assert_target(&targets[i], 0.5f);
         tested++;
     }
     assert_true(tested >= 10);
@@ -226,7 +233,8 @@ static void what_no_target_can_be_is_refused(void **state) {
     REFUSED("targets.peak", t->white = 500, t->peak = 400);
     REFUSED("targets.peak", t->peak = 1e5f);
     REFUSED("deep_color", s.desc.deep_color = MASU_ON);
-    REFUSED("deep_color", s.desc.deep_color = MASU_ON, t->storage = 0, t->format = VK_FORMAT_B8G8R8A8_SRGB);
+    REFUSED("deep_color", s.desc.deep_color = MASU_ON, t->storage = 0,
+            t->format = VK_FORMAT_B8G8R8A8_SRGB);
     REFUSED("deep_color", s.desc.deep_color = MASU_OFF, t->format = VK_FORMAT_R16G16B16A16_SFLOAT);
     REFUSED("deep_color", s.desc.deep_color = (masu_switch)3);
     REFUSED("dither", s.desc.dither = (masu_switch)3);
@@ -301,7 +309,8 @@ static void constant_pictures_stay_what_they_are(void **state) {
                         if (rgba[4 * k + (uint32_t)c] > high) high = rgba[4 * k + (uint32_t)c];
                     }
                 }
-                if (dither) print_message("rung %u, %7.3f: %7.3f, %u to %u\n", r, wanted, mean, low, high);
+                if (dither)
+                    print_message("rung %u, %7.3f: %7.3f, %u to %u\n", r, wanted, mean, low, high);
                 assert_true(fabs(mean - wanted) <= 0.505);
                 assert_true(high - low <= 1);
                 /* A step remains one step, at any noise; without dither everything is rounded.
@@ -386,7 +395,8 @@ static double unevenness(int dither, masu_switch deep) {
     double sum = 0;
     for (uint32_t x = 0; x < SIDE; x += 8) {
         double means[MEANS] = {0};
-        for (uint32_t k = 0; k < 8 * SIDE; k++) means[k / 64] += rgba[4 * (k / 8 * SIDE + x + k % 8)] / 64.0;
+        for (uint32_t k = 0; k < 8 * SIDE; k++)
+            means[k / 64] += rgba[4 * (k / 8 * SIDE + x + k % 8)] / 64.0;
         for (uint32_t i = 1; i + 1 < MEANS; i++) {
             double bend = means[i - 1] - 2 * means[i] + means[i + 1];
             sum += bend * bend / (MEANS - 2);
@@ -471,9 +481,9 @@ static void deeper_colour_is_nearer_to_the_truth(void **state) {
             native[i] += error * error / (3.0 * SIDE * SIDE);
         }
     }
-    print_message("10 bits in between: %.4f of 255 off, RMS; floats in between: %.4f; %llu, %llu bytes\n",
-                  sqrt(rms[0]), sqrt(rms[1]), (unsigned long long)bytes[0],
-                  (unsigned long long)bytes[1]);
+    print_message(
+        "10 bits in between: %.4f of 255 off, RMS; floats in between: %.4f; %llu, %llu bytes\n",
+        sqrt(rms[0]), sqrt(rms[1]), (unsigned long long)bytes[0], (unsigned long long)bytes[1]);
     print_message("from the image at full size: %.3f and %.3f of 255, RMS\n", sqrt(native[0]),
                   sqrt(native[1]));
     assert_true(sqrt(rms[1]) < 0.32); /* rounding by itself causes 0.289 */
@@ -550,7 +560,8 @@ static void upscale(const uint16_t *halves, uint8_t *out) {
 
 static void a_broken_pixel_stays_in_its_footprint(void **state) {
     (void)state;
-    static const uint16_t hostile[] = {0x7E00, 0xFE00, 0x7C00, 0xFC00, 0xBC00, 0x7BFF, 0x8000, 0x0001};
+    static const uint16_t hostile[] = {0x7E00, 0xFE00, 0x7C00, 0xFC00,
+                                       0xBC00, 0x7BFF, 0x8000, 0x0001};
     static uint16_t halves[4 * IN_W * IN_H];
     static uint8_t good[4 * OUT_W * OUT_H], bad[4 * OUT_W * OUT_H];
     open_device(&s);
@@ -568,7 +579,8 @@ static void a_broken_pixel_stays_in_its_footprint(void **state) {
             if (!memcmp(good + 4 * i, bad + 4 * i, 4)) continue;
             changed++;
             /* EASU reads two texels around; RCAS reads a pixel around. */
-            double dx = fabs((i % OUT_W + 0.5) / 2 - (x + 0.5)), dy = fabs((i / OUT_W + 0.5) / 2 - (y + 0.5));
+            double dx = fabs((i % OUT_W + 0.5) / 2 - (x + 0.5)),
+                   dy = fabs((i / OUT_W + 0.5) / 2 - (y + 0.5));
             assert_true(dx <= 2.5 && dy <= 2.5);
         }
         assert_true(changed > 0);

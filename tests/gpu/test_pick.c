@@ -33,7 +33,8 @@ static world look_around(masu_session *s) {
                .instances = masu_scene_count(&scene, MASU_SCENE_INSTANCE)};
     assert_in_range(w.instances, 0, MOST);
     for (uint32_t i = 0; i < w.instances; i++)
-        assert_int_equal(masu_instance_get(s->m, masu_instance_at(s->m, i), &w.at[i], &failure), MASU_OK);
+        assert_int_equal(masu_instance_get(s->m, masu_instance_at(s->m, i), &w.at[i], &failure),
+                         MASU_OK);
     return w;
 }
 
@@ -50,7 +51,8 @@ static int meets_box(const masu_instance_state *s, vec from, vec along) {
     const double o[3] = {from.x, from.y, from.z}, d[3] = {along.x, along.y, along.z};
     double in = 0, out = 1e30;
     for (int k = 0; k < 3; k++) {
-        double a = ((double)s->box_low[k] - 1e-6 - o[k]) / d[k], b = ((double)s->box_high[k] + 1e-6 - o[k]) / d[k];
+        double a = ((double)s->box_low[k] - 1e-6 - o[k]) / d[k],
+               b = ((double)s->box_high[k] + 1e-6 - o[k]) / d[k];
         in = fmax(in, fmin(a, b));
         out = fmin(out, fmax(a, b));
     }
@@ -90,7 +92,8 @@ static hit cast(const world *w, vec from, vec along, double near_distance) {
                 }
                 double z = meets_triangle(corner, from, along);
                 if (z < best.z && z >= near_distance)
-                    best = (hit){i, (w->v.materials[p->material].flags & MASU_MATERIAL_IS_BLEND) != 0, z};
+                    best = (hit){
+                        i, (w->v.materials[p->material].flags & MASU_MATERIAL_IS_BLEND) != 0, z};
             }
         }
     }
@@ -103,10 +106,16 @@ typedef struct lens {
 } lens;
 
 static lens lens_of(const masu_camera *c, double width, double height, double aspect) {
-    vec f = vec_unit(vec_of(c->forward)), r = vec_unit(vec_cross(f, (vec){0, 1, 0})), u = vec_cross(r, f);
+    vec f = vec_unit(vec_of(c->forward)), r = vec_unit(vec_cross(f, (vec){0, 1, 0})),
+        u = vec_cross(r, f);
     double tangent = tan((double)c->fov_y / 2);
-    return (lens){{c->position[0], c->position[1], c->position[2]}, f, vec_scale(r, tangent * aspect),
-                  vec_scale(u, tangent), width, height, (double)c->near_distance};
+    return (lens){{c->position[0], c->position[1], c->position[2]},
+                  f,
+                  vec_scale(r, tangent * aspect),
+                  vec_scale(u, tangent),
+                  width,
+                  height,
+                  (double)c->near_distance};
 }
 
 /* Ray through a position at the render size, in pixels. */
@@ -122,7 +131,8 @@ typedef struct tally {
     uint32_t of[MOST];
 } tally;
 
-static masu_pick_info pick_at(masu_session *s, masu_frame_desc frame, uint32_t x, uint32_t y, masu_commands *commands) {
+static masu_pick_info pick_at(masu_session *s, masu_frame_desc frame, uint32_t x, uint32_t y,
+                              masu_commands *commands) {
     masu_pick_info info;
     frame.pick = 1, frame.pick_x = x, frame.pick_y = y;
     draw(s, &frame, commands, NULL);
@@ -145,12 +155,14 @@ static int is_near(const world *w, const lens *l, double x, double y, uint32_t i
 /* Compares one pixel of a frame with a ray. slack: relative depth difference allowed for the LOD,
  * and for the driver's vertex grid: SwiftShader's is a sixteenth of a pixel, which matters on the
  * ground. */
-static void check_pixel(masu_session *s, const world *w, const lens *l, const masu_frame_desc *frame, uint32_t x,
-                        uint32_t y, double scale, double slack, tally *t) {
+static void check_pixel(masu_session *s, const world *w, const lens *l,
+                        const masu_frame_desc *frame, uint32_t x, uint32_t y, double scale,
+                        double slack, tally *t) {
     masu_commands commands;
     masu_pick_info info = pick_at(s, *frame, x, y, &commands);
     masu_readback_image image;
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image, &failure), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image, &failure),
+                     MASU_OK);
     uint32_t px = (uint32_t)((x + 0.5) * scale), py = (uint32_t)((y + 0.5) * scale);
     float depth = ((const float *)image.pixels)[py * image.width + px];
     vec along = ray_of(l, px + 0.5, py + 0.5);
@@ -195,7 +207,8 @@ static void check_pixel(masu_session *s, const world *w, const lens *l, const ma
 }
 
 /* A grid of pixels. */
-static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, double slack, uint32_t step) {
+static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, double slack,
+                        uint32_t step) {
     tally t;
     memset(&t, 0, sizeof t);
     world w = look_around(s);
@@ -209,7 +222,8 @@ static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, do
     lens l = lens_of(frame.camera, round(size.width * scale), round(size.height * scale),
                      (double)size.width / size.height);
     for (uint32_t y = step / 2; y < size.height; y += step)
-        for (uint32_t x = step / 2; x < size.width; x += step) check_pixel(s, &w, &l, &frame, x, y, scale, slack, &t);
+        for (uint32_t x = step / 2; x < size.width; x += step)
+            check_pixel(s, &w, &l, &frame, x, y, scale, slack, &t);
     print_message("  %u pixels: %u sky, %u SDF, %u of instances, %u transparent; %u at edges\n",
                   t.pixels, t.sky, t.sdf, t.instances, t.blended, t.edges);
     assert_in_range(t.edges, 0, t.pixels / 20);
@@ -243,7 +257,8 @@ static void open_picking(masu_session *s, const char *name) { open_reserve(s, na
 
 static uint32_t index_of(masu_session *s, const char *name) {
     masu_instance_state state;
-    assert_int_equal(masu_instance_get(s->m, masu_instance_find(s->m, name), &state, &failure), MASU_OK);
+    assert_int_equal(masu_instance_get(s->m, masu_instance_find(s->m, name), &state, &failure),
+                     MASU_OK);
     return state.index;
 }
 
@@ -262,7 +277,8 @@ static void polygons_sdf_and_sky_are_told_apart(void **state) {
     (void)state;
     masu_session s;
     open_picking(&s, "test_both");
-    tally t = check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 1, 1e-3, trials(11, 11, 15));
+    tally t =
+        check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 1, 1e-3, trials(11, 11, 15));
     assert_true(t.sky > 10 && t.sdf > 5 && t.instances > 5);
     close_picking(&s);
     open_picking(&s, "test_sphere_sdf"); /* no polygons at all */
@@ -295,7 +311,8 @@ static void a_model_and_its_node_are_named(void **state) {
     masu_commands commands;
     open_picking(&s, "test_live");
     masu_model truck = masu_model_find(s.m, "truck");
-    masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 60, 38, &commands);
+    masu_pick_info info =
+        pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 60, 38, &commands);
     assert_int_equal(info.kind, MASU_PICK_INSTANCE);
     assert_int_equal(info.model.id, truck.id);
     masu_node_state node;
@@ -328,9 +345,11 @@ static void a_copy_that_came_later_is_not_named(void **state) {
         rows[4 * k + 3] = (float)(c.position[k] + 3 * (double)c.forward[k] / length);
     assert_int_equal(masu_model_add(s.m, block, rows, &copies[0], &failure), MASU_OK);
     assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1], &failure), MASU_OK);
-    masu_model now = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, W / 2, H / 2, &commands).model;
+    masu_model now =
+        pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, W / 2, H / 2, &commands).model;
     assert_int_equal(now.id, copies[0].id);
-    assert_int_equal(masu_model_remove(s.m, copies[1], &failure), MASU_OK); /* another slot changes nothing */
+    assert_int_equal(masu_model_remove(s.m, copies[1], &failure),
+                     MASU_OK); /* another slot changes nothing */
     assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1], &failure), MASU_OK);
     assert_int_equal(masu_pick(s.m, commands.slot, &info, &failure), MASU_OK);
     assert_int_equal(info.model.id, copies[0].id);
@@ -357,7 +376,8 @@ static void lods_and_culling_change_nothing(void **state) {
     (void)state;
     masu_session s;
     open_picking(&s, "test_lods");
-    masu_camera c = {.position = {0, 4, 20}, .forward = {0, -0.2f, -1}, .fov_y = 1, .near_distance = 0.1f};
+    masu_camera c = {
+        .position = {0, 4, 20}, .forward = {0, -0.2f, -1}, .fov_y = 1, .near_distance = 0.1f};
     tally t = check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, 1, 0.05, 9 + 4);
     assert_true(t.instances > 20);
     close_picking(&s);
@@ -371,19 +391,23 @@ static void holes_of_a_mask_are_not_picked(void **state) {
     masu_commands commands;
     uint32_t there = 0, holes = 0;
     open_picking(&s, "test_foliage");
-    masu_camera c = {.position = {1.5, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.7f, .near_distance = 0.005f};
+    masu_camera c = {
+        .position = {1.5, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.7f, .near_distance = 0.005f};
     /* of the rows with alpha-tested surfaces, and some sky */
     for (uint32_t i = 0; i < trials(300, 300, 150); i++) {
         uint32_t x = i * 37 % W, y = 15 + i * 53 % 60;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
-        float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
+        masu_pick_info info =
+            pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
+        float depth =
+            ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
         assert_true(info.depth == depth);
         assert_int_equal(info.kind, depth > 0 ? MASU_PICK_INSTANCE : MASU_PICK_SKY);
         double at = 1.5 + ((x + 0.5) / W * 2 - 1) * tan(0.35) * W / H * 4;
         holes += depth == 0 && fabs(at) < 1 && y > 25 && y < 65;
         if (depth == 0) continue;
         there++;
-        assert_int_equal(info.instance.id, masu_instance_find(s.m, at < 1.5 ? "needles" : "leaves").id);
+        assert_int_equal(info.instance.id,
+                         masu_instance_find(s.m, at < 1.5 ? "needles" : "leaves").id);
     }
     print_message("  %u pixels of masks, %u holes\n", there, holes);
     assert_true(there > 10 && holes > 3);
@@ -399,16 +423,20 @@ static void through_a_mask_what_is_behind_is_picked(void **state) {
     const float rows[12] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, -1};
     open_picking(&s, "test_foliage");
     place_instance(&s, "leaves", rows); /* a metre behind the needles */
-    masu_camera c = {.position = {0, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.5f, .near_distance = 0.005f};
+    masu_camera c = {
+        .position = {0, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.5f, .near_distance = 0.005f};
     for (uint32_t i = 0; i < trials(400, 400, 200); i++) {
         uint32_t x = i * 37 % W, y = i * 53 % H;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
-        float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
+        masu_pick_info info =
+            pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
+        float depth =
+            ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
         if (depth == 0) continue;
         int first = 0.005f / depth < 4.5f;
         near += first;
         behind += !first;
-        assert_int_equal(info.instance.id, masu_instance_find(s.m, first ? "needles" : "leaves").id);
+        assert_int_equal(info.instance.id,
+                         masu_instance_find(s.m, first ? "needles" : "leaves").id);
     }
     print_message("  %u pixels of the first, %u behind it\n", near, behind);
     assert_true(near > 10 && behind > 3);
@@ -435,8 +463,10 @@ static void what_bends_is_picked_where_it_is(void **state) {
     for (uint32_t i = 0; i < 2; i++) w.at[rigid[i]].shown = 1;
     for (uint32_t i = 0; i < trials(150, 150, 50); i++) { /* around the skinned meshes */
         uint32_t x = 56 + i * 37 % 54, y = 22 + i * 29 % 38;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
-        float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
+        masu_pick_info info =
+            pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
+        float depth =
+            ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
         assert_true(info.depth == depth);
         if (depth == 0) continue;
         hit behind = cast(&w, l.eye, ray_of(&l, x + 0.5, y + 0.5), l.near_distance);
@@ -477,23 +507,27 @@ static void a_part_of_the_output_has_pixels_of_its_own(void **state) {
     d.viewports[0] = (masu_viewport){0, 0, 80, 90};
     d.viewports[1] = (masu_viewport){80, 10, 60, 60};
     make_own(&s, &x, &d);
-    masu_camera c = {.position = {-1.5, 1, 6}, .forward = {0, 0, -1}, .fov_y = 0.6f, .near_distance = 0.05f};
+    masu_camera c = {
+        .position = {-1.5, 1, 6}, .forward = {0, 0, -1}, .fov_y = 0.6f, .near_distance = 0.05f};
     masu_commands commands;
     masu_pick_info info[2];
     for (uint32_t v = 0; v < 2; v++) { /* in flight at once: each slot has its own answer */
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &c, .viewport = v, .pick = 1, .pick_x = 30, .pick_y = v ? 12 : 55};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &c, .viewport = v,
+                                 .pick = 1,       .pick_x = 30, .pick_y = v ? 12 : 55};
         assert_int_equal(masu_frame(x.m, &frame, &commands, &failure), MASU_OK);
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
         assert_int_equal(commands.slot, v);
     }
-    for (uint32_t v = 0; v < 2; v++) assert_int_equal(masu_pick(x.m, v, &info[v], &failure), MASU_OK);
+    for (uint32_t v = 0; v < 2; v++)
+        assert_int_equal(masu_pick(x.m, v, &info[v], &failure), MASU_OK);
     assert_int_equal(info[0].model.id, masu_model_find(x.m, "truck").id);
     assert_int_equal(info[1].instance.id, masu_instance_find(x.m, "wall").id);
     assert_true(fabs(info[1].position[2] - -3.85) < 1e-3);
-    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &c, .viewport = 1, .pick = 1, .pick_x = 60, .pick_y = 0};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &c, .viewport = 1,
+                             .pick = 1,       .pick_x = 60, .pick_y = 0};
     assert_int_equal(masu_frame(x.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
-    assert_string_equal(failure.text,
-                        "pick_x, pick_y is 60, 0, allowed are pixels of the output, which is 60x60");
+    assert_string_equal(
+        failure.text, "pick_x, pick_y is 60, 0, allowed are pixels of the output, which is 60x60");
     unmake_own(&s, &x);
     close_session(&s);
 }
@@ -506,10 +540,13 @@ static void a_window_of_its_own_is_picked_through(void **state) {
     open_picking(&s, "test_both");
     masu_camera c = {.position = {0, 0, 4}, .forward = {0, 0, -1}, .near_distance = 0.1f};
     for (int side = 0; side < 2; side++) {
-        c.left = side ? 0.01f : -0.3f, c.right = side ? 0.61f : 0.3f, c.bottom = -0.2f, c.top = 0.2f;
+        c.left = side ? 0.01f : -0.3f, c.right = side ? 0.61f : 0.3f, c.bottom = -0.2f,
+        c.top = 0.2f;
         uint32_t x = side ? 0 : W / 2;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, H / 2, &commands);
-        float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[H / 2 * W + x];
+        masu_pick_info info =
+            pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, H / 2, &commands);
+        float depth =
+            ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[H / 2 * W + x];
         assert_true(depth > 0 && info.depth == depth);
         double slope = (double)c.left + (x + 0.5) / W * 0.6;
         assert_true(fabs(info.position[0] - slope * (4 - info.position[2])) < 1e-4);

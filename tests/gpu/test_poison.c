@@ -28,8 +28,9 @@ enum { W = 40, H = 24, BYTES = W * H * 4, WARM = 6, REST = 64 };
 static const struct {
     const char *name;
     uint32_t word;
-} words[] = {{"NaN", 0x7FC07FC0u},      {"infinity", 0x7F807C00u}, {"minus infinity", 0xFF80FC00u},
-             {"denormal", 0x00010001u}, {"huge", 0x7F7F7BFFu},     {"negative and huge", 0xFF7FFBFFu}};
+} words[] = {
+    {"NaN", 0x7FC07FC0u},      {"infinity", 0x7F807C00u}, {"minus infinity", 0xFF80FC00u},
+    {"denormal", 0x00010001u}, {"huge", 0x7F7F7BFFu},     {"negative and huge", 0xFF7FFBFFu}};
 enum { WORDS = sizeof words / sizeof *words };
 
 static masu_session s;
@@ -45,9 +46,10 @@ static PFN_vkCmdPipelineBarrier barrier;
 static void all_stops(VkCommandBuffer cmd) {
     const VkMemoryBarrier all = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                  .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
-                                 .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
-    barrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &all, 0,
-            NULL, 0, NULL);
+                                 .dstAccessMask =
+                                     VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
+    barrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &all,
+            0, NULL, 0, NULL);
 }
 
 static void poison_at_label(VkCommandBuffer cmd, const char *name) {
@@ -79,7 +81,8 @@ static void open_case(const char *scene, const masu_rung *rung) {
                                .size = s.m->plan.blocks[MASU_ROLE_DEVICE].bytes,
                                .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT};
     assert_int_equal(vkCreateBuffer(device, &info, NULL, &over), VK_SUCCESS);
-    assert_int_equal(vkBindBufferMemory(device, over, s.m->device.memory[MASU_ROLE_DEVICE], 0), VK_SUCCESS);
+    assert_int_equal(vkBindBufferMemory(device, over, s.m->device.memory[MASU_ROLE_DEVICE], 0),
+                     VK_SUCCESS);
 }
 
 static void close_case(void) {
@@ -115,7 +118,8 @@ static void check_halves(const masu_readback_image *image, const char *what) {
     for (uint32_t y = 0; y < image->height; y++) {
         const uint16_t *row = (const void *)((const uint8_t *)image->pixels + y * image->row_bytes);
         for (uint32_t i = 0; i < 4 * image->width; i++) {
-            if ((row[i] & 0x7C00) == 0x7C00) fail_msg("%s: pixel %u, %u is %04x", what, i / 4, y, row[i]);
+            if ((row[i] & 0x7C00) == 0x7C00)
+                fail_msg("%s: pixel %u, %u is %04x", what, i / 4, y, row[i]);
         }
     }
 }
@@ -127,7 +131,8 @@ static void take(uint8_t *pixels, const char *what, uint32_t poisoned) {
     draw(&s, &(masu_frame_desc){.time_step = step_s}, &commands, pixels);
     assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &depth, NULL), MASU_OK);
     assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &hdr, NULL), MASU_OK);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &velocity, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &velocity, NULL),
+                     MASU_OK);
     bool image = poisoned && poisoned < MASU_IMAGE_COUNT;
     uint32_t own = image ? masu_images[poisoned].readback : 0;
     for (uint32_t y = 0; y < depth.height && !(own & MASU_READBACK_DEPTH); y++) {
@@ -145,8 +150,9 @@ static void take(uint8_t *pixels, const char *what, uint32_t poisoned) {
  * faces of lights, which keep their content until a light or a caster moves. */
 static bool is_poisoned(uint32_t resource) {
     if (resource == MASU_IMAGE_LOCAL_SHADOW_ATLAS) return false;
-    static const uint32_t buffers[] = {MASU_BUFFER_TILES,       MASU_BUFFER_EXPOSURE,   MASU_BUFFER_LIGHT_TILES,
-                                       MASU_BUFFER_SPECULAR_TILES, MASU_BUFFER_SMAA_TILES, MASU_BUFFER_PREVIOUS_VERTICES,
+    static const uint32_t buffers[] = {MASU_BUFFER_TILES,       MASU_BUFFER_EXPOSURE,
+                                       MASU_BUFFER_LIGHT_TILES, MASU_BUFFER_SPECULAR_TILES,
+                                       MASU_BUFFER_SMAA_TILES,  MASU_BUFFER_PREVIOUS_VERTICES,
                                        MASU_BUFFER_SEEN};
     if (!masu_is_buffer(resource))
         return resource && resource < MASU_IMAGE_COUNT && s.m->plan.images[resource].bytes;
@@ -229,8 +235,8 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
         }
     }
     assert_true(pairs > 3);
-    printf("  %s: %u inputs of passes, %u poisoned frames, healed within %u frames\n", scene, pairs, cases,
-           longest);
+    printf("  %s: %u inputs of passes, %u poisoned frames, healed within %u frames\n", scene, pairs,
+           cases, longest);
     close_case();
 }
 

@@ -164,7 +164,8 @@ static void failures_lose_nothing(void **state) {
         assert_int_equal(told().count, all);
         assert_int_equal(wrap.live - live, pooled);
     }
-    printf("  %u pipelines, %llu calls of masu_init without making any\n", all, (unsigned long long)calls);
+    printf("  %u pipelines, %llu calls of masu_init without making any\n", all,
+           (unsigned long long)calls);
     masu_pipelines_destroy(&s.desc.vulkan, &pool);
     assert_int_equal(wrap.live, live);
     free(block);

@@ -42,8 +42,10 @@ static uint8_t image[2][4][4 * W * H];
 
 static void reserved_effects_of_strength_0_change_no_bit(void **state) {
     (void)state;
-    const masu_rung rungs[] = {{.scale = 1.0f}, {.scale = 0.5f, .temporal = MASU_ON},
-                               {.scale = 1.0f, .silhouettes = MASU_ON}, {.scale = 0.7f, .temporal = MASU_OFF}};
+    const masu_rung rungs[] = {{.scale = 1.0f},
+                               {.scale = 0.5f, .temporal = MASU_ON},
+                               {.scale = 1.0f, .silhouettes = MASU_ON},
+                               {.scale = 0.7f, .temporal = MASU_OFF}};
     for (int reserved = 0; reserved < 2; reserved++) {
         masu_session_desc d = test_desc("test_both", W, H);
         d.desc.rung_count = 4;
@@ -82,7 +84,8 @@ static void they_cost_what_the_header_says(void **state) {
         uint32_t found = 0;
         for (uint32_t p = 0; p < plan.pass_count; p++) {
             const char *name = plan.passes[p].name;
-            found += plan.passes[p].active && (!strncmp(name, "bloom", 5) || !strncmp(name, "focus", 5));
+            found +=
+                plan.passes[p].active && (!strncmp(name, "bloom", 5) || !strncmp(name, "focus", 5));
         }
         assert_int_equal(found, passes[i]);
         masu_memory_row rows[MEMORY_ROWS];
@@ -113,10 +116,13 @@ static const masu_camera ahead = {
 /* Radiance of a small bright disc in the dark, away from the scene. */
 static void draw_disc(float bloom, float radius, float *rgb) {
     const masu_light dark = {.sun_direction = {0, 1, 0}, .exposure = 1.0f};
-    const masu_particle disc = {.position = {0, 0, 60}, .half_width = radius, .color = {100, 50, 20},
-                                .opacity = 1, .edge = 1};
-    const masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &ahead, .light = &dark, .particles = &disc,
-                                   .particle_count = 1, .post.bloom = bloom};
+    const masu_particle disc = {.position = {0, 0, 60},
+                                .half_width = radius,
+                                .color = {100, 50, 20},
+                                .opacity = 1,
+                                .edge = 1};
+    const masu_frame_desc frame = {MASU_FRAME_DESC,    .camera = &ahead,    .light = &dark,
+                                   .particles = &disc, .particle_count = 1, .post.bloom = bloom};
     draw_linear(&frame, rgb);
 }
 
@@ -179,8 +185,9 @@ static void bloom_has_the_same_width_at_every_resolution(void **state) {
         open_session(&s, &d);
         draw_disc(1.0f, 0.03f, rgb);
         for (int p = 0; p < 4; p++) radii[i][p] = radius_of(rgb, sizes[i], parts[p]);
-        print_message("%u rows: 25, 50, 75, 90 %% of the light within %.4f %.4f %.4f %.4f of the height\n",
-                      sizes[i], radii[i][0], radii[i][1], radii[i][2], radii[i][3]);
+        print_message(
+            "%u rows: 25, 50, 75, 90 %% of the light within %.4f %.4f %.4f %.4f of the height\n",
+            sizes[i], radii[i][0], radii[i][1], radii[i][2], radii[i][3]);
         close_session(&s);
     }
     for (int i = 1; i < 3; i++) {
@@ -223,10 +230,12 @@ static void draw_positions(const masu_camera *camera, const masu_post *post, flo
 /* The mean over cameras all over the lens, whose windows keep the sharp plane in place. */
 static void draw_lens(const masu_camera *camera, const masu_post *post, float *mean) {
     const double tan_y = tan(0.5 * (double)camera->fov_y), tan_x = tan_y * DW / DH;
-    const double *f = (double[]){(double)camera->forward[0], (double)camera->forward[1], (double)camera->forward[2]};
+    const double *f = (double[]){(double)camera->forward[0], (double)camera->forward[1],
+                                 (double)camera->forward[2]};
     double length = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]), across = hypot(f[0], f[2]);
     const double right[3] = {-f[2] / across, 0, f[0] / across};
-    const double up[3] = {-f[1] * f[0] / across / length, across / length, -f[1] * f[2] / across / length};
+    const double up[3] = {-f[1] * f[0] / across / length, across / length,
+                          -f[1] * f[2] / across / length};
     memset(mean, 0, sizeof lens);
     for (int k = 0; k < LENS; k++) {
         double away = 0.5 * (double)post->aperture * sqrt((k + 0.5) / LENS), angle = 2.39996 * k;
@@ -263,9 +272,10 @@ static void depth_of_field_is_near_the_mean_over_a_lens(void **state) {
         draw_positions(&camera, &(masu_post){0}, sharp);
         draw_positions(&camera, &cases[i].post, blurred);
         double without = rms(sharp, lens), with = rms(blurred, lens);
-        print_message("%s, focus %g m, lens %g m: RMS error to the mean of %d cameras %.5f, without %.5f\n",
-                      cases[i].scene, (double)cases[i].post.focus, (double)cases[i].post.aperture, LENS,
-                      with, without);
+        print_message(
+            "%s, focus %g m, lens %g m: RMS error to the mean of %d cameras %.5f, without %.5f\n",
+            cases[i].scene, (double)cases[i].post.focus, (double)cases[i].post.aperture, LENS, with,
+            without);
         assert_true(without > 1e-3);
         assert_true(with < cases[i].most * without);
         close_session(&s);
@@ -284,7 +294,8 @@ static void the_sharp_plane_stays_sharp(void **state) {
     draw_linear(&(masu_frame_desc){MASU_FRAME_DESC}, sharp);
     view_depths(read_image(&s, commands.slot, MASU_READBACK_DEPTH), &camera, depth, DW * DH);
     draw_linear(&(masu_frame_desc){MASU_FRAME_DESC, .post = post}, blurred);
-    double k = (double)post.aperture / (4 * (double)post.focus * tan(0.5 * (double)camera.fov_y)) * DH;
+    double k =
+        (double)post.aperture / (4 * (double)post.focus * tan(0.5 * (double)camera.fov_y)) * DH;
     uint32_t kept = 0, changed = 0, before = 0;
     for (uint32_t i = 0; i < DW * DH; i++) {
         double radius = depth[i] > 0 ? k * (1 - (double)post.focus / (double)depth[i]) : k;
@@ -292,7 +303,9 @@ static void the_sharp_plane_stays_sharp(void **state) {
         before += radius < -0.5;
         if (fabs(radius) < 0.49) {
             kept++;
-            if (!same) fail_msg("pixel %u at %g m has a radius of %g and has changed", i, (double)depth[i], radius);
+            if (!same)
+                fail_msg("pixel %u at %g m has a radius of %g and has changed", i, (double)depth[i],
+                         radius);
         }
         changed += !same;
     }
@@ -313,7 +326,11 @@ static void fill_table(uint32_t size, look of) {
         const uint32_t at[3] = {i % size, i / size % size, i / size / size};
         for (uint32_t c = 0; c < 3; c++) {
             float v = (float)at[of == SWAPPED ? (c + 1) % 3 : c] / (float)(size - 1);
-            table[3 * i + c] = of == NEGATIVE ? 1 - v : of != NOT_FINITE ? v : c == 0 ? NAN : c == 1 ? INFINITY : -3.0f;
+            table[3 * i + c] = of == NEGATIVE     ? 1 - v
+                               : of != NOT_FINITE ? v
+                               : c == 0           ? NAN
+                               : c == 1           ? INFINITY
+                                                  : -3.0f;
         }
     }
 }
@@ -322,8 +339,11 @@ static uint32_t most_apart(const uint8_t *a, const uint8_t *b, look of) {
     uint32_t most = 0;
     for (uint32_t i = 0; i < W * H; i++) {
         for (uint32_t c = 0; c < 3; c++) {
-            int wanted = of == SWAPPED ? a[4 * i + (c + 1) % 3] : of == NEGATIVE ? 255 - a[4 * i + c]
-                         : of == IDENTITY ? a[4 * i + c] : c == 1 ? 255 : 0;
+            int wanted = of == SWAPPED    ? a[4 * i + (c + 1) % 3]
+                         : of == NEGATIVE ? 255 - a[4 * i + c]
+                         : of == IDENTITY ? a[4 * i + c]
+                         : c == 1         ? 255
+                                          : 0;
             int apart = abs(b[4 * i + c] - wanted);
             most = most < (uint32_t)apart ? (uint32_t)apart : most;
         }
@@ -365,7 +385,8 @@ static bool is_even(const uint8_t *rgba, uint32_t p) {
     for (uint32_t c = 0; c < 3; c++) {
         for (int y = -1; y <= 1; y++) {
             for (int x = -1; x <= 1; x++) {
-                if (abs(rgba[4 * (size_t)((int)p + y * W + x) + c] - rgba[4 * p + c]) > 4) return false;
+                if (abs(rgba[4 * (size_t)((int)p + y * W + x) + c] - rgba[4 * p + c]) > 4)
+                    return false;
             }
         }
     }
@@ -392,15 +413,19 @@ static void curves_are_their_formulas(void **state) {
                 double x = (p % W + 0.5) / W * 2 - 1, y = (p / W + 0.5) / H * 2 - 1;
                 if (i == 3) { /* centre as before, corners darker */
                     int centre = x * x + y * y < 0.003, corner = x * x + y * y > 1.9;
-                    if (centre) assert_true(abs(image[1][3][4 * p + 1] - image[1][0][4 * p + 1]) <= 3);
+                    if (centre)
+                        assert_true(abs(image[1][3][4 * p + 1] - image[1][0][4 * p + 1]) <= 3);
                     if (corner) assert_true(image[1][3][4 * p + 1] < 0.93 * image[1][0][4 * p + 1]);
                     continue;
                 }
                 for (uint32_t c = 0; c < 3; c++) {
-                    double v = image[1][0][4 * p + c] / 255.0, linear = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-                    double wanted = i == 2 ? sqrt(v) : masu_ref_srgb_encode(i == 1 ? 0.5 * linear : linear);
+                    double v = image[1][0][4 * p + c] / 255.0,
+                           linear = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+                    double wanted =
+                        i == 2 ? sqrt(v) : masu_ref_srgb_encode(i == 1 ? 0.5 * linear : linear);
                     if (v < 0.1) continue; /* roots of few steps */
-                    if (r && !is_even(image[1][0], p)) continue; /* means of graded samples differ at edges */
+                    if (r && !is_even(image[1][0], p))
+                        continue; /* means of graded samples differ at edges */
                     worst[i] = fmax(worst[i], fabs(image[1][i][4 * p + c] - 255 * wanted));
                 }
             }
@@ -422,14 +447,30 @@ static void values_beyond_their_limits_are_errors(void **state) {
     d.desc.lut_size = 5;
     open_session(&s, &d);
     draw_rung(&s, 0, image[0][0]);
-    const masu_post good[] = {{.bloom = 1}, {.aperture = 1e6f, .focus = 1e-6f}, {.aperture = 1e-3f, .focus = 1e9f},
-                              {.vignette = 1}, {.brightness = 8}, {.brightness = -8}, {.gamma = 0.1f},
-                              {.gamma = 10}, {.focus = 1}};
-    const masu_post bad[] = {{.bloom = 1.001f}, {.bloom = -0.001f}, {.bloom = NAN}, {.aperture = 1.01e6f, .focus = 1},
-                             {.aperture = 1, .focus = 0}, {.aperture = 1, .focus = 1.01e9f},
-                             {.aperture = -1, .focus = 1}, {.vignette = 1.001f}, {.vignette = -0.1f},
-                             {.brightness = 8.01f}, {.brightness = -8.01f}, {.gamma = 0.099f}, {.gamma = 10.01f},
-                             {.gamma = INFINITY}, {.focus = -1}};
+    const masu_post good[] = {{.bloom = 1},
+                              {.aperture = 1e6f, .focus = 1e-6f},
+                              {.aperture = 1e-3f, .focus = 1e9f},
+                              {.vignette = 1},
+                              {.brightness = 8},
+                              {.brightness = -8},
+                              {.gamma = 0.1f},
+                              {.gamma = 10},
+                              {.focus = 1}};
+    const masu_post bad[] = {{.bloom = 1.001f},
+                             {.bloom = -0.001f},
+                             {.bloom = NAN},
+                             {.aperture = 1.01e6f, .focus = 1},
+                             {.aperture = 1, .focus = 0},
+                             {.aperture = 1, .focus = 1.01e9f},
+                             {.aperture = -1, .focus = 1},
+                             {.vignette = 1.001f},
+                             {.vignette = -0.1f},
+                             {.brightness = 8.01f},
+                             {.brightness = -8.01f},
+                             {.gamma = 0.099f},
+                             {.gamma = 10.01f},
+                             {.gamma = INFINITY},
+                             {.focus = -1}};
     for (size_t i = 0; i < sizeof good / sizeof *good; i++)
         draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .post = good[i]}, &commands, NULL);
     uint64_t next = commands.frame + 1;
@@ -460,12 +501,14 @@ static void values_beyond_their_limits_are_errors(void **state) {
     assert_int_equal(masu_lut_set(s.m, table, 5, &detail), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_lut_set(s.m, NULL, 0, &detail), MASU_OK);
     masu_memory need;
-    static const uint32_t descs[][3] = {{MASU_POST_ALL, 33, 0}, {MASU_POST_ALL, 2, 0}, {MASU_POST_ALL + 1, 0, 1},
-                                        {MASU_POST_ALL, 34, 1}, {MASU_POST_ALL, 1, 1}, {MASU_POST_FOCUS, 5, 1}};
+    static const uint32_t descs[][3] = {{MASU_POST_ALL, 33, 0},    {MASU_POST_ALL, 2, 0},
+                                        {MASU_POST_ALL + 1, 0, 1}, {MASU_POST_ALL, 34, 1},
+                                        {MASU_POST_ALL, 1, 1},     {MASU_POST_FOCUS, 5, 1}};
     for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
         masu_desc other = s.desc;
         other.post = descs[i][0], other.lut_size = descs[i][1];
-        assert_int_equal(masu_memory_query(&other, &need, &detail), descs[i][2] ? MASU_ERROR_ARGUMENT : MASU_OK);
+        assert_int_equal(masu_memory_query(&other, &need, &detail),
+                         descs[i][2] ? MASU_ERROR_ARGUMENT : MASU_OK);
     }
     close_session(&s);
 }

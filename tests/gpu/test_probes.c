@@ -203,12 +203,14 @@ static void set_points(const masu_blob_probes *p) {
     float(*points)[4] = b.buffers[PLACES].mapped;
     uint64_t random = 77;
     for (uint32_t i = 0; i < POINTS; i++) {
-        float z = random_float(&random) * 2 - 1, a = random_float(&random) * 6.2831853f, r = sqrtf(1 - z * z);
+        float z = random_float(&random) * 2 - 1, a = random_float(&random) * 6.2831853f,
+              r = sqrtf(1 - z * z);
         const float n[3] = {r * cosf(a), r * sinf(a), z};
         for (int k = 0; k < 3; k++) {
             /* From two cells outside the grid to two on the other side. */
             float cells = (float)p->counts[k] + 4;
-            points[2 * i][k] = p->origin[k] + p->spacing[k] * (random_float(&random) * cells - 2.5f);
+            points[2 * i][k] =
+                p->origin[k] + p->spacing[k] * (random_float(&random) * cells - 2.5f);
             points[2 * i + 1][k] = n[k];
             if (i >= POINTS - 512) {
                 uint32_t which = (uint32_t)(random_float(&random) * 16);

@@ -177,7 +177,8 @@ static int has_ray_queries(void) {
         d.no_renderer = true;
         open_session(&s, &d);
         offered = s.host.ray_query;
-        if (driver && !strcmp(driver, "lavapipe-25")) assert_int_equal(offered, !masu_session_denied());
+        if (driver && !strcmp(driver, "lavapipe-25"))
+            assert_int_equal(offered, !masu_session_denied());
         if (!offered) {
             assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
             assert_string_equal(detail.what, "vulkan.ray_query");
@@ -313,7 +314,8 @@ static void move_all(masu_session *s, const masu_scene_view *v, const double by[
         float rows[12];
         memcpy(rows, v->instances[i].transform, sizeof rows);
         for (uint32_t k = 0; k < 3; k++) rows[4 * k + 3] = (float)((double)rows[4 * k + 3] + by[k]);
-        assert_int_equal(masu_instance_set_transform(s->m, masu_instance_at(s->m, i), rows, NULL), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(s->m, masu_instance_at(s->m, i), rows, NULL),
+                         MASU_OK);
     }
 }
 

@@ -38,7 +38,8 @@ static void let_go(const masu_session *s) {
 }
 
 /* Renders `frames` frames: drivers allocate when shaders run. */
-static round_figures library_round(masu_session *s, const masu_desc *d, void *block, uint64_t bytes, int frames) {
+static round_figures library_round(masu_session *s, const masu_desc *d, void *block, uint64_t bytes,
+                                   int frames) {
     char error[ERROR_SIZE];
     masu_renderer *m;
     masu_commands commands;
@@ -61,10 +62,14 @@ static void bare_objects(masu_session *s) {
     const VkDevice device = s->host.device;
     const VkAllocationCallbacks *a = s->host.desc.allocator;
     VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                            .codeSize = sizeof masu_spv_tally_comp, .pCode = masu_spv_tally_comp};
-    VkDescriptorSetLayoutBinding binding = {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL};
-    VkDescriptorSetLayoutCreateInfo set_info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                                .bindingCount = 1, .pBindings = &binding};
+                                            .codeSize = sizeof masu_spv_tally_comp,
+                                            .pCode = masu_spv_tally_comp};
+    VkDescriptorSetLayoutBinding binding = {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                                            VK_SHADER_STAGE_COMPUTE_BIT, NULL};
+    VkDescriptorSetLayoutCreateInfo set_info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = 1,
+        .pBindings = &binding};
     VkShaderModule module;
     VkDescriptorSetLayout set;
     VkPipelineLayout layout;
@@ -79,8 +84,10 @@ static void bare_objects(masu_session *s) {
 #define MAKE(call) assert_int_equal(call, VK_SUCCESS)
     MAKE(vkCreateShaderModule(device, &module_info, a, &module));
     MAKE(vkCreateDescriptorSetLayout(device, &set_info, a, &set));
-    VkPipelineLayoutCreateInfo layout_info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                              .setLayoutCount = 1, .pSetLayouts = &set};
+    VkPipelineLayoutCreateInfo layout_info = {.sType =
+                                                  VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                              .setLayoutCount = 1,
+                                              .pSetLayouts = &set};
     MAKE(vkCreatePipelineLayout(device, &layout_info, a, &layout));
     VkComputePipelineCreateInfo pipeline_info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .layout = layout,
@@ -90,9 +97,13 @@ static void bare_objects(masu_session *s) {
     VkBufferCreateInfo buffer_info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 4096,
                                       .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
     MAKE(vkCreateBuffer(device, &buffer_info, a, &buffer));
-    VkImageCreateInfo image_info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, .imageType = VK_IMAGE_TYPE_2D,
-                                    .format = VK_FORMAT_R8G8B8A8_UNORM, .extent = {16, 16, 1}, .mipLevels = 1,
-                                    .arrayLayers = 1, .samples = VK_SAMPLE_COUNT_1_BIT,
+    VkImageCreateInfo image_info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                    .imageType = VK_IMAGE_TYPE_2D,
+                                    .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                    .extent = {16, 16, 1},
+                                    .mipLevels = 1,
+                                    .arrayLayers = 1,
+                                    .samples = VK_SAMPLE_COUNT_1_BIT,
                                     .usage = VK_IMAGE_USAGE_STORAGE_BIT};
     MAKE(vkCreateImage(device, &image_info, a, &image));
     VkMemoryRequirements need;
@@ -102,15 +113,19 @@ static void bare_objects(masu_session *s) {
     while (!(need.memoryTypeBits >> memory_info.memoryTypeIndex & 1)) memory_info.memoryTypeIndex++;
     MAKE(vkAllocateMemory(device, &memory_info, a, &memory));
     MAKE(vkBindImageMemory(device, image, memory, 0));
-    VkImageViewCreateInfo view_info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, .image = image,
-                                       .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = image_info.format,
+    VkImageViewCreateInfo view_info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                       .image = image,
+                                       .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                       .format = image_info.format,
                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
     MAKE(vkCreateImageView(device, &view_info, a, &view));
     VkSamplerCreateInfo sampler_info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     MAKE(vkCreateSampler(device, &sampler_info, a, &sampler));
     VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
-    VkDescriptorPoolCreateInfo sets_info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1,
-                                            .poolSizeCount = 1, .pPoolSizes = &size};
+    VkDescriptorPoolCreateInfo sets_info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                            .maxSets = 1,
+                                            .poolSizeCount = 1,
+                                            .pPoolSizes = &size};
     MAKE(vkCreateDescriptorPool(device, &sets_info, a, &sets));
     VkCommandPoolCreateInfo pool_info = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                          .queueFamilyIndex = s->host.family};
@@ -159,12 +174,14 @@ static void ten_inits_leave_nothing_of_theirs(void **state) {
     for (int way = 0; way < WAYS; way++) {
         size_t before = mallinfo2().uordblks;
         for (int i = 0; i < ROUNDS; i++) {
-            if (way < BARE) all[way][i] = library_round(&s, &own, block, need.host_bytes, way == FRAMES);
+            if (way < BARE)
+                all[way][i] = library_round(&s, &own, block, need.host_bytes, way == FRAMES);
             else all[way][i] = bare_round(&s, all[INITS][0].creates);
             all[way][i].heap = (int64_t)mallinfo2().uordblks - (int64_t)before;
         }
     }
-    printf("  %llu objects of Vulkan a round; heap bytes more than before the first of its kind, after each:\n",
+    printf("  %llu objects of Vulkan a round; heap bytes more than before the first of its kind, "
+           "after each:\n",
            (unsigned long long)all[INITS][0].creates);
     for (int way = 0; way < WAYS; way++) {
         printf("  %-20s", names[way]);

@@ -78,7 +78,8 @@ static void what_is_added_is_as_if_baked_so(void **state) {
     masu_session live, baked;
     masu_model added[KINDS];
     masu_punctual_light light;
-    masu_session_desc d = desc_of("test_reserve", KINDS, 2), truth = desc_of("test_reserve_baked", 0, 0);
+    masu_session_desc d = desc_of("test_reserve", KINDS, 2),
+                      truth = desc_of("test_reserve_baked", 0, 0);
     masu_stats_info expected = {0}, is;
     for (uint32_t flight = 1; flight <= 3; flight++) {
         /* the number of frames in flight depends on the host only */
@@ -100,7 +101,8 @@ static void what_is_added_is_as_if_baked_so(void **state) {
         draw_frames(&live, pictures[0]);
         uint32_t off = far_off(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1]);
         uint32_t before = far_off(pictures[2][FRAMES - 1], pictures[1][FRAMES - 1]);
-        printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, before %u\n",
+        printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, "
+               "before %u\n",
                flight, off, BYTES, before);
         assert_true(off < BYTES / 1000);
         assert_true(before > BYTES / 10);
@@ -127,7 +129,8 @@ static void what_is_removed_leaves_nothing(void **state) {
     open_session(&fresh, &d);
     add_all(&s, added, &light);
     draw_frames(&s, pictures[0]);
-    for (uint32_t k = 0; k < KINDS; k++) assert_int_equal(masu_model_remove(s.m, added[k], &failure), MASU_OK);
+    for (uint32_t k = 0; k < KINDS; k++)
+        assert_int_equal(masu_model_remove(s.m, added[k], &failure), MASU_OK);
     assert_int_equal(masu_punctual_light_remove(s.m, light, &failure), MASU_OK);
     draw_frames(&s, pictures[0]);
     draw_frames(&fresh, pictures[2]);
@@ -153,7 +156,8 @@ static void room_that_is_not_used_changes_no_bit(void **state) {
     (void)state;
     static const char *const scenes[] = {"test_reserve", "test_skin", "test_both"};
     for (uint32_t i = 0; i < 3; i += whole_run() ? 1 : 2) { /* at least polygons, and an SDF */
-        masu_session_desc with = desc_of(scenes[i], 3, i < 2 ? 4 : 0), without = desc_of(scenes[i], 0, 0);
+        masu_session_desc with = desc_of(scenes[i], 3, i < 2 ? 4 : 0),
+                          without = desc_of(scenes[i], 0, 0);
         masu_session s;
         with.desc.mutable_materials = 1;
         open_session(&s, &without);
@@ -162,7 +166,8 @@ static void room_that_is_not_used_changes_no_bit(void **state) {
         open_session(&s, &with);
         draw_frames(&s, pictures[1]);
         close_session(&s);
-        printf("  %s: %u\n", scenes[i], max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]));
+        printf("  %s: %u\n", scenes[i],
+               max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]));
         assert_int_equal(max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]), 0);
     }
 }
@@ -192,8 +197,9 @@ static void at_the_limit_is_refused(void **state) {
     assert_int_equal(masu_punctual_light_add(s.m, &bad, &light[0], &failure), MASU_ERROR_ARGUMENT);
     /* the lamp's light was removed */
     assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0], &failure), MASU_OK);
-    assert_int_equal(masu_punctual_light_remove(s.m, masu_punctual_light_find(s.m, "glow"), &failure),
-                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(
+        masu_punctual_light_remove(s.m, masu_punctual_light_find(s.m, "glow"), &failure),
+        MASU_ERROR_ARGUMENT);
     draw_rung(&s, 0, pictures[0][0]);
     close_session(&s);
 }
@@ -219,7 +225,8 @@ static void a_copy_is_animated_by_itself(void **state) {
     draw_frames(&own, pictures[1]);
     assert_int_equal(add(&copied, "swing", at, &copy), MASU_OK);
     assert_int_equal(masu_model_clips(copied.m, copy), 1);
-    assert_true(masu_model_clip_duration(copied.m, copy, 0) == masu_model_clip_duration(own.m, swing, 0));
+    assert_true(masu_model_clip_duration(copied.m, copy, 0) ==
+                masu_model_clip_duration(own.m, swing, 0));
     masu_model_state whole;
     assert_int_equal(masu_model_get(copied.m, copy, &whole, &failure), MASU_OK);
     uint32_t moved = 0;
@@ -227,16 +234,21 @@ static void a_copy_is_animated_by_itself(void **state) {
         for (uint32_t n = 0; n < whole.nodes; n++) {
             assert_int_equal(masu_model_node_get(copied.m, copy, n, &is, &failure), MASU_OK);
             assert_int_equal(masu_model_node_get(own.m, swing, n, &expected, &failure), MASU_OK);
-            assert_int_equal(masu_model_node_get(copied.m, masu_model_find(copied.m, "swing"), n, &rest, &failure), MASU_OK);
+            assert_int_equal(masu_model_node_get(copied.m, masu_model_find(copied.m, "swing"), n,
+                                                 &rest, &failure),
+                             MASU_OK);
             if (turn) assert_memory_equal(is.world, expected.world, sizeof is.world);
             else moved += memcmp(is.world, expected.world, sizeof is.world) != 0;
             if (n == whole.nodes - 1 && !turn) before = rest;
-            if (n == whole.nodes - 1) assert_memory_equal(rest.world, before.world, sizeof rest.world);
+            if (n == whole.nodes - 1)
+                assert_memory_equal(rest.world, before.world, sizeof rest.world);
         }
-        if (!turn) assert_int_equal(masu_model_animate(copied.m, copy, &turned, 1, &failure), MASU_OK);
+        if (!turn)
+            assert_int_equal(masu_model_animate(copied.m, copy, &turned, 1, &failure), MASU_OK);
     }
     assert_true(moved > 0);
-    assert_int_equal(masu_model_show(copied.m, masu_model_find(copied.m, "swing"), 0, &failure), MASU_OK);
+    assert_int_equal(masu_model_show(copied.m, masu_model_find(copied.m, "swing"), 0, &failure),
+                     MASU_OK);
     draw_frames(&copied, pictures[0]);
     draw_frames(&copied, pictures[0]); /* with the same numbers */
     uint32_t off = far_off(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1]);
@@ -279,7 +291,8 @@ static void rays_of_the_device_meet_copies(void **state) {
     }
     uint32_t off = far_off(pictures[1][FRAMES - 1], pictures[0][FRAMES - 1]);
     uint32_t without = far_off(pictures[2][FRAMES - 1], pictures[0][FRAMES - 1]);
-    printf("  %u bytes differ by more than 4 from those of the own trees, without copies %u\n", off, without);
+    printf("  %u bytes differ by more than 4 from those of the own trees, without copies %u\n", off,
+           without);
     assert_true(off < BYTES / 1000);
     assert_true(without > BYTES / 10);
 }
@@ -381,8 +394,10 @@ static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t mode
     assert_int_equal(masu_punctual_light_get(m, l, &ls, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_set(m, l, &spot, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_remove(m, l, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_material_get(m, (masu_material){material}, &mat, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_material_set(m, (masu_material){material}, &mat, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_get(m, (masu_material){material}, &mat, &failure),
+                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_set(m, (masu_material){material}, &mat, &failure),
+                     MASU_ERROR_ARGUMENT);
     if (!instance) return; /* a light without an instance */
     carried.instance = i;
     masu_punctual_light none;
@@ -451,7 +466,8 @@ static void the_box_is_as_large_as_was_said(void **state) {
         named |= !strcmp(rows[i].name, "reserve models") ? 1u : 0;
         named |= !strcmp(rows[i].name, "reserve lights") ? 2u : 0;
         named |= !strcmp(rows[i].name, "reserve instances") ? 4u : 0;
-        named |= !strcmp(rows[i].name, "live materials") && !strcmp(rows[i].kind, "buffer") ? 8u : 0;
+        named |=
+            !strcmp(rows[i].name, "live materials") && !strcmp(rows[i].kind, "buffer") ? 8u : 0;
     }
     assert_int_equal(named, 15);
     masu_desc tight = s.desc;
@@ -485,7 +501,8 @@ static masu_material_state material(masu_session *s, const char *model, masu_mat
 static void paint(masu_session *s) {
     masu_material of;
     masu_material_state to = material(s, "floor", &of);
-    const float red[3] = {0.7f, 0.4f, 0.3f}, glow[3] = {0.2f, 0.4f, 0.1f}, blue[3] = {0.2f, 0.4f, 0.9f};
+    const float red[3] = {0.7f, 0.4f, 0.3f}, glow[3] = {0.2f, 0.4f, 0.1f},
+                blue[3] = {0.2f, 0.4f, 0.9f};
     assert_true(to.roughness == 0.1f && to.metallic == 0.9f && to.base_color[1] == 0.5f);
     to.roughness = 0.3f;
     memcpy(to.base_color, red, sizeof red);
@@ -507,7 +524,8 @@ static void paint(masu_session *s) {
 static void what_is_painted_is_as_if_baked_so(void **state) {
     (void)state;
     masu_session live, baked;
-    masu_session_desc d = desc_of("test_reserve", 0, 0), truth = desc_of("test_reserve_painted", 0, 0);
+    masu_session_desc d = desc_of("test_reserve", 0, 0),
+                      truth = desc_of("test_reserve_painted", 0, 0);
     d.desc.mutable_materials = 1;
     open_session(&baked, &truth);
     draw_frames(&baked, pictures[2]);
@@ -521,7 +539,8 @@ static void what_is_painted_is_as_if_baked_so(void **state) {
         draw_frames(&live, pictures[0]); /* already in the first frame */
         uint32_t off = 0, before = far_off(pictures[2][0], pictures[1][0]);
         for (uint32_t i = 0; i < FRAMES; i++) off += far_off(pictures[0][i], pictures[1][i]);
-        printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, before %u\n",
+        printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, "
+               "before %u\n",
                flight, off, FRAMES * BYTES, FRAMES * before);
         assert_true(off < FRAMES * BYTES / 500);
         assert_true(before > BYTES / 10);
@@ -547,7 +566,8 @@ static void a_history_is_told(void **state) {
         close_session(&s);
     }
     uint32_t off = far_off(pictures[0][0], pictures[1][0]);
-    printf("  8 frames later %u of %u bytes differ by more than 4 from the scene baked so\n", off, BYTES);
+    printf("  8 frames later %u of %u bytes differ by more than 4 from the scene baked so\n", off,
+           BYTES);
     assert_true(off < BYTES / 20);
 }
 
@@ -583,7 +603,8 @@ static void what_would_change_a_pass_is_refused(void **state) {
     REFUSED(emissive[1], INFINITY, "emissive");
     assert_int_equal(masu_material_get(s.m, of, &to, &failure), MASU_OK);
     assert_memory_equal(&to, &was, sizeof to);
-    assert_int_equal(masu_material_set(s.m, (masu_material){of.id + 100}, &was, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_set(s.m, (masu_material){of.id + 100}, &was, &failure),
+                     MASU_ERROR_ARGUMENT);
     close_session(&s);
 }
 
@@ -600,7 +621,8 @@ static void lobes_are_kept(void **state) {
     assert_true(was.specular == 0.5f);
     REFUSED(specular, 0.6f, "specular");
     was = material(&s, "ior 2.4", &of);
-    if (!(fabsf(was.specular * 0.08f - 0.1696f) < 0.003f)) fail_msg("specular is %g", (double)was.specular);
+    if (!(fabsf(was.specular * 0.08f - 0.1696f) < 0.003f))
+        fail_msg("specular is %g", (double)was.specular);
     REFUSED(specular, 0.5f, "specular");
     REFUSED(coat, 0.5f, "coat");
     to = was;

@@ -47,11 +47,13 @@ static masu_result resize(own_renderer *x, uint32_t width, uint32_t height, masu
 }
 
 /* Renders frames of a rung; the number of the first determines the noise. cut: set by the host. */
-static void draw_cut(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out, int cut) {
+static void draw_cut(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out,
+                     int cut) {
     char error[ERROR_SIZE];
     masu_commands commands;
     for (uint32_t i = 0; i < frames; i++) {
-        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = rung, .time = 0.1 * i, .time_step = 0.1f, .cut = cut && i == 0};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = rung, .time = 0.1 * i, .time_step = 0.1f,
+                                 .cut = cut && i == 0};
         assert_int_equal(masu_frame(x->m, &frame, &commands, &failure), MASU_OK);
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     }
@@ -59,11 +61,13 @@ static void draw_cut(masu_session *s, own_renderer *x, uint32_t rung, uint32_t f
     memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
 }
 
-static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out) {
+static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames,
+                        uint8_t *out) {
     draw_cut(s, x, rung, frames, out, 1);
 }
 
-static const uint32_t sizes[][2] = {{97, 61}, {160, 90}, {2, 90}, {1, 1}, {160, 1}, {33, 20}, {128, 88}};
+static const uint32_t sizes[][2] = {{97, 61}, {160, 90}, {2, 90},  {1, 1},
+                                    {160, 1}, {33, 20},  {128, 88}};
 
 /* halves: history in half floats, as on devices that do not filter unorm. */
 static void compare_sizes(const char *scene, size_t count, int halves) {
@@ -255,8 +259,10 @@ static uint64_t setups_of_a_frame(masu_session *s, own_renderer *x, uint32_t run
     char error[ERROR_SIZE];
     masu_commands commands;
     uint64_t before = wrap.setup_calls;
-    assert_int_equal(
-        masu_frame(x->m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = rung, .target = target}, &commands, &failure), MASU_OK);
+    assert_int_equal(masu_frame(x->m,
+                                &(masu_frame_desc){MASU_FRAME_DESC, .rung = rung, .target = target},
+                                &commands, &failure),
+                     MASU_OK);
     uint64_t calls = wrap.setup_calls - before;
     assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     if (!out) return calls;
@@ -342,8 +348,9 @@ static void a_resize_is_allowed_in_any_state(void **state) {
         images[0] = others[2].image, views[0] = others[2].view;
         t.count = 1;
         assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
-        assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .target = 1}, &commands, &failure),
-                         MASU_ERROR_ARGUMENT);
+        assert_int_equal(
+            masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .target = 1}, &commands, &failure),
+            MASU_ERROR_ARGUMENT);
         (void)setups_of_a_frame(&s, &x, 1, 0, NULL);
         assert_ok(masu_headless_target_read(&s.host, &others[2], error, sizeof error));
         unmake_own(&s, &x);
@@ -375,7 +382,8 @@ static void what_fails_half_way_is_made_good(void **state) {
         assert_int_equal(result, k <= 6 ? MASU_ERROR_VULKAN : MASU_OK);
         if (result) assert_string_equal(detail.what, wrap.failed_call);
         assert_int_equal(masu_load(x.m, &commands, &failure), MASU_OK); /* the blob was freed */
-        result = masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 1}, &commands, &failure);
+        result =
+            masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 1}, &commands, &failure);
         assert_int_equal(result, k > 6 ? MASU_ERROR_VULKAN : MASU_OK);
         if (result) assert_int_equal(failure.vulkan, VK_ERROR_OUT_OF_HOST_MEMORY);
         wrap.fail_at = 0;
@@ -391,8 +399,9 @@ static void what_fails_half_way_is_made_good(void **state) {
     assert_int_equal(resize(&x, 96, 54, &detail), MASU_ERROR_DEVICE_LOST);
     assert_int_equal(detail.vulkan, VK_ERROR_DEVICE_LOST);
     assert_int_equal(masu_load(x.m, &commands, &failure), MASU_ERROR_DEVICE_LOST);
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 0}, &commands, &failure),
-                     MASU_ERROR_DEVICE_LOST);
+    assert_int_equal(
+        masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 0}, &commands, &failure),
+        MASU_ERROR_DEVICE_LOST);
     assert_int_equal(wrap.calls_after_loss, 0);
     wrap.fail_at = 0, wrap.persistent = false;
     unmake_own(&s, &x);

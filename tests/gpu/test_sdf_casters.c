@@ -45,7 +45,8 @@ static int blocks(const shape *s, const double from[3], const double to[3]) {
     double enter = 0, leave = 1, o[3], d[3];
     for (int k = 0; k < 3; k++) o[k] = from[k] - s->middle[k], d[k] = to[k] - from[k];
     if (!s->box) {
-        double a = dot3(d, d), b = dot3(o, d), c = dot3(o, o) - s->half[0] * s->half[0], root = b * b - a * c;
+        double a = dot3(d, d), b = dot3(o, d), c = dot3(o, o) - s->half[0] * s->half[0],
+               root = b * b - a * c;
         if (root < 0) return 0;
         enter = fmax(enter, (-b - sqrt(root)) / a), leave = fmin(leave, (-b + sqrt(root)) / a);
         return enter < leave;
@@ -99,7 +100,8 @@ static int around(const double at[3], const double light[3]) {
 
 /* ---- Images ---------------------------------------------------------------------------------- */
 
-static const masu_camera camera = {.position = {0, 3, 8}, .forward = {0, -0.3f, -1}, .fov_y = 0.8f, .near_distance = 0.1f};
+static const masu_camera camera = {
+    .position = {0, 3, 8}, .forward = {0, -0.3f, -1}, .fov_y = 0.8f, .near_distance = 0.1f};
 
 static void ray_of(uint32_t x, uint32_t y, double out[3]) {
     double f[3], r[3], u[3], up[3] = {0, 1, 0}, tan_y = tan((double)camera.fov_y / 2);
@@ -108,19 +110,24 @@ static void ray_of(uint32_t x, uint32_t y, double out[3]) {
     cross3(f, up, r);
     unit3(r);
     cross3(r, f, u);
-    double a = ((x + 0.5) / WIDTH * 2 - 1) * tan_y * WIDTH / HEIGHT, b = ((y + 0.5) / HEIGHT * 2 - 1) * tan_y;
+    double a = ((x + 0.5) / WIDTH * 2 - 1) * tan_y * WIDTH / HEIGHT,
+           b = ((y + 0.5) / HEIGHT * 2 - 1) * tan_y;
     for (int k = 0; k < 3; k++) out[k] = f[k] + r[k] * a - u[k] * b;
 }
 
-static void bake(const char *name, const char *models, const char *sdf, const char *lights, const char *more) {
+static void bake(const char *name, const char *models, const char *sdf, const char *lights,
+                 const char *more) {
     char json[4096];
     write_text("casters.sdf", sdf);
-    assert_true((size_t)snprintf(json, sizeof json,
-                                 "{\"models\": [%s], \"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
-                                 "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, \"ambient_occlusion\": false, "
-                                 "\"sdf\": {\"source\": \"casters.sdf\", \"bounds\": [[-6, -2, -6], [6, 6, 6]], \"shadows\": false, "
-                                 "\"ambient_occlusion\": false}, \"lights\": [%s]%s}",
-                                 models, lights, more) < sizeof json);
+    assert_true(
+        (size_t)snprintf(json, sizeof json,
+                         "{\"models\": [%s], \"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
+                         "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, "
+                         "\"ambient_occlusion\": false, "
+                         "\"sdf\": {\"source\": \"casters.sdf\", \"bounds\": [[-6, -2, -6], [6, 6, "
+                         "6]], \"shadows\": false, "
+                         "\"ambient_occlusion\": false}, \"lights\": [%s]%s}",
+                         models, lights, more) < sizeof json);
     bake_scene(name, json);
 }
 
@@ -136,7 +143,8 @@ static void open_scene(masu_session *s, const char *name) {
     open_session(s, &d);
 }
 
-static void render(masu_session *s, uint32_t rung, uint32_t frames, masu_frame_desc frame, float *hdr) {
+static void render(masu_session *s, uint32_t rung, uint32_t frames, masu_frame_desc frame,
+                   float *hdr) {
     masu_commands commands;
     frame.camera = &camera;
     frame.rung = rung;
@@ -178,7 +186,8 @@ static const double by_depth = (double)NAN;
 static tally compare(const double light[3], double plane_z) {
     tally t = {0};
     for (uint32_t i = 0; i < PIXELS; i++) {
-        double ray[3], at[3], z = depths[i] > 0 ? (double)camera.near_distance / (double)depths[i] : 0;
+        double ray[3], at[3],
+            z = depths[i] > 0 ? (double)camera.near_distance / (double)depths[i] : 0;
         ray_of(i % WIDTH, i / WIDTH, ray);
         double forward = (ray[1] * -0.3 - ray[2]) / sqrt(1.09);
         if (!isnan(plane_z)) z = (plane_z - camera.position[2]) / ray[2] * forward;
@@ -193,22 +202,26 @@ static void expect(const char *what, tally t, uint32_t dark, uint32_t bright, in
     print_message("%-34s %5u dark, %5u bright, %u with an error over 0.1, %u below 0.99\n",
                   what, t.dark, t.bright, t.wrong, t.acne);
     if (t.dark < dark || t.bright < bright) fail_msg("%s: too few pixels", what);
-    if (t.wrong * 100 > t.dark + t.bright) fail_msg("%s: %u of %u pixels", what, t.wrong, t.dark + t.bright);
+    if (t.wrong * 100 > t.dark + t.bright)
+        fail_msg("%s: %u of %u pixels", what, t.wrong, t.dark + t.bright);
     if (t.leaks * 20 > t.dark) fail_msg("%s: %u of %u dark pixels are lit", what, t.leaks, t.dark);
     if (!blurred && t.acne * 200 > t.bright) fail_msg("%s: acne, %u of %u", what, t.acne, t.bright);
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
 
-#define GROUND "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 24}}, \"material\": {\"roughness\": 1}}"
+#define GROUND                                                                                     \
+    "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 24}}, \"material\": {\"roughness\": 1}}"
 #define POINT "{\"type\": \"point\", \"position\": [1, 4, 1.5], \"intensity\": 30, \"range\": 20}"
 #define SPOT                                                                                                      \
     "{\"type\": \"spot\", \"position\": [1, 4, 1.5], \"direction\": [-1, -4, -1], \"outer\": 40, \"inner\": 35, " \
     "\"intensity\": 30, \"range\": 20}"
 
-static const shape ball_and_box[] = {{0, {-1.2, 1, 0}, {0.8, 0, 0}}, {1, {1.5, 0.7, -1}, {0.5, 0.7, 0.6}}};
-static const char ball_and_box_text[] = "part a = translate((-1.2, 1, 0), sphere(0.8));\n"
-                                        "part b = translate((1.5, 0.7, -1), box((0.5, 0.7, 0.6)));\n";
+static const shape ball_and_box[] = {{0, {-1.2, 1, 0}, {0.8, 0, 0}},
+                                     {1, {1.5, 0.7, -1}, {0.5, 0.7, 0.6}}};
+static const char ball_and_box_text[] =
+    "part a = translate((-1.2, 1, 0), sphere(0.8));\n"
+    "part b = translate((1.5, 0.7, -1), box((0.5, 0.7, 0.6)));\n";
 static const double lamp[3] = {1, 4, 1.5};
 
 static void points_and_spots_see_the_sdf(void **state) {
@@ -221,8 +234,10 @@ static void points_and_spots_see_the_sdf(void **state) {
         open_scene(&s, "casters");
         render(&s, NONE, 1, (masu_frame_desc){0}, open);
         render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
-        print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces, (double)evals / (faces * 128 * 128));
-        expect(i ? "spot: ground and itself" : "point: ground and itself", compare(lamp, by_depth), 100, 2000, 0);
+        print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces,
+                      (double)evals / (faces * 128 * 128));
+        expect(i ? "spot: ground and itself" : "point: ground and itself", compare(lamp, by_depth),
+               100, 2000, 0);
         close_session(&s);
     }
 }
@@ -237,14 +252,17 @@ static void the_sdf_alone_has_shadows(void **state) {
     for (int i = 0; i < 81; i++) {
         double at[3] = {(i % 9 - 4) * 0.9, 0.5 + 0.1 * (i % 5), (i / 9 - 5) * 0.9};
         balls[i] = (shape){0, {at[0], at[1], at[2]}, {0.25, 0, 0}};
-        used += (size_t)snprintf(text + used, sizeof text - used, "part p%d = translate((%.9g, %.9g, %.9g), sphere(0.25));\n", i, at[0], at[1], at[2]);
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "part p%d = translate((%.9g, %.9g, %.9g), sphere(0.25));\n", i,
+                                 at[0], at[1], at[2]);
     }
     shapes = balls, shape_count = 81;
     bake("alone", "", text, POINT, ", \"reflections\": false");
     open_scene(&s, "alone");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
-    print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces, (double)evals / (faces * 128 * 128));
+    print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces,
+                  (double)evals / (faces * 128 * 128));
     expect("81 balls over a half-space", compare(lamp, by_depth), 80, 1000, 0);
     close_session(&s);
 }
@@ -254,9 +272,12 @@ static void polygons_shade_the_sdf(void **state) {
     shape both[] = {{1, {0, 1.5, 0}, {0.8, 0.1, 0.8}}, {0, {0.3, 0.5, 0.3}, {0.4, 0, 0}}};
     masu_session s;
     shapes = both, shape_count = 2;
-    bake("roof", "{\"mesh\": {\"box\": {\"size\": [1.6, 0.2, 1.6]}}, \"name\": \"roof\", \"translate\": [0, 1.5, 0]}",
-         "part ground = plane((0, 1, 0), 0);\npart ball = translate((0.3, 0.5, 0.3), sphere(0.4));\n", POINT,
-         ", \"reflections\": false");
+    bake("roof",
+         "{\"mesh\": {\"box\": {\"size\": [1.6, 0.2, 1.6]}}, \"name\": \"roof\", \"translate\": "
+         "[0, 1.5, 0]}",
+         "part ground = plane((0, 1, 0), 0);\npart ball = translate((0.3, 0.5, 0.3), "
+         "sphere(0.4));\n",
+         POINT, ", \"reflections\": false");
     open_scene(&s, "roof");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
@@ -281,9 +302,14 @@ static void a_bulb_lets_its_light_out_and_a_roof_does_not(void **state) {
     const double bulb[3] = {0, 1, 0};
     masu_session s;
     shapes = lantern, shape_count = 2;
-    bake("lantern", GROUND ", {\"mesh\": {\"box\": {\"size\": [5, 0.05, 0.3]}}, \"translate\": [0, 2.4, 0], \"rotate\": [-60, 0, 0]}",
-         "part bulb = translate((0, 1, 0), sphere(0.15));\npart roof = translate((0, 1.5, 0), box((1, 0.1, 1)));\n",
-         "{\"type\": \"point\", \"position\": [0, 1, 0], \"intensity\": 10, \"range\": 12, \"radius\": 0.05}", ", \"reflections\": false");
+    bake("lantern",
+         GROUND ", {\"mesh\": {\"box\": {\"size\": [5, 0.05, 0.3]}}, \"translate\": [0, 2.4, 0], "
+                "\"rotate\": [-60, 0, 0]}",
+         "part bulb = translate((0, 1, 0), sphere(0.15));\npart roof = translate((0, 1.5, 0), "
+         "box((1, 0.1, 1)));\n",
+         "{\"type\": \"point\", \"position\": [0, 1, 0], \"intensity\": 10, \"range\": 12, "
+         "\"radius\": 0.05}",
+         ", \"reflections\": false");
     open_scene(&s, "lantern");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
@@ -295,12 +321,20 @@ static void a_pane_and_a_particle_lie_in_the_shadow(void **state) {
     (void)state;
     masu_session s;
     shapes = ball_and_box, shape_count = 2;
-    bake("pane", "{\"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, \"rotate\": [90, 0, 0], \"translate\": [0, 0, -2.5], "
-                 "\"material\": {\"roughness\": 1, \"opacity\": 0.5}}",
-         ball_and_box_text, "{\"type\": \"point\", \"position\": [0, 1, 4], \"intensity\": 30, \"range\": 20}", ", \"reflections\": false");
+    bake("pane",
+         "{\"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, \"rotate\": [90, 0, 0], "
+         "\"translate\": [0, 0, -2.5], "
+         "\"material\": {\"roughness\": 1, \"opacity\": 0.5}}",
+         ball_and_box_text,
+         "{\"type\": \"point\", \"position\": [0, 1, 4], \"intensity\": 30, \"range\": 20}",
+         ", \"reflections\": false");
     open_scene(&s, "pane");
     const double front[3] = {0, 1, 4};
-    masu_particle spark = {.half_width = 0.3f, .color = {1, 1, 1}, .opacity = 1, .edge = 1, .flags = MASU_PARTICLE_LIT};
+    masu_particle spark = {.half_width = 0.3f,
+                           .color = {1, 1, 1},
+                           .opacity = 1,
+                           .edge = 1,
+                           .flags = MASU_PARTICLE_LIT};
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -309,7 +343,8 @@ static void a_pane_and_a_particle_lie_in_the_shadow(void **state) {
     expect("a pane behind", compare(front, -2.5), 200, 2000, 0);
     /* Behind the ball, visible above it; and next to it. */
     for (int bright = 0; bright < 2; bright++) {
-        spark.position[0] = bright ? 0.4 : -2.1, spark.position[1] = bright ? 2.4 : 1.8, spark.position[2] = -2;
+        spark.position[0] = bright ? 0.4 : -2.1, spark.position[1] = bright ? 2.4 : 1.8,
+        spark.position[2] = -2;
         masu_frame_desc frame = {.particles = &spark, .particle_count = 1};
         render(&s, NONE, 1, frame, open);
         render(&s, SHADOWS, SETTLED, frame, lit);
@@ -318,11 +353,14 @@ static void a_pane_and_a_particle_lie_in_the_shadow(void **state) {
         for (uint32_t i = 0; i < PIXELS; i++) {
             double ray[3], x[2];
             ray_of(i % WIDTH, i / WIDTH, ray);
-            for (int k = 0; k < 2; k++) x[k] = camera.position[k] + ray[k] * (-2 - camera.position[2]) / ray[2] - spark.position[k];
+            for (int k = 0; k < 2; k++)
+                x[k] = camera.position[k] + ray[k] * (-2 - camera.position[2]) / ray[2] -
+                       spark.position[k];
             if (hypot(x[0], x[1]) > 0.2 || depths[i] > 0) continue;
             want += (double)open[4 * i], is += (double)lit[4 * i];
         }
-        print_message("a particle %s: %.4f of its light\n", bright ? "beside" : "behind", is / want);
+        print_message("a particle %s: %.4f of its light\n", bright ? "beside" : "behind",
+                      is / want);
         assert_true(want > 0.1 && (bright ? is > 0.99 * want : is < 0.01 * want));
     }
     close_session(&s);
@@ -334,9 +372,13 @@ static void a_mirror_shows_the_shadow(void **state) {
     masu_session s;
     tally t = {0};
     shapes = ball_and_box, shape_count = 1;
-    bake("mirror", "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 24}}, \"traced\": true, \"material\": {\"roughness\": 0.0, \"metallic\": 1}}, "
-                   "{\"mesh\": {\"box\": {\"size\": [20, 12, 1]}}, \"translate\": [0, 0, -3.5], \"traced\": true, \"material\": {\"roughness\": 1}}",
-         "part a = translate((-1.2, 1, 0), sphere(0.8));\n", "{\"type\": \"point\", \"position\": [-1, 1, 4], \"intensity\": 30, \"range\": 20}",
+    bake("mirror",
+         "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 24}}, \"traced\": true, "
+         "\"material\": {\"roughness\": 0.0, \"metallic\": 1}}, "
+         "{\"mesh\": {\"box\": {\"size\": [20, 12, 1]}}, \"translate\": [0, 0, -3.5], \"traced\": "
+         "true, \"material\": {\"roughness\": 1}}",
+         "part a = translate((-1.2, 1, 0), sphere(0.8));\n",
+         "{\"type\": \"point\", \"position\": [-1, 1, 4], \"intensity\": 30, \"range\": 20}",
          ", \"reflections\": {}");
     const double front[3] = {-1, 1, 4};
     open_scene(&s, "mirror");
@@ -347,7 +389,8 @@ static void a_mirror_shows_the_shadow(void **state) {
         ray_of(i % WIDTH, i / WIDTH, ray);
         floor_t = -camera.position[1] / ray[1];
         for (int k = 0; k < 3; k++) at[k] = camera.position[k] + floor_t * ray[k];
-        if (!(floor_t > 0) || at[2] < -2.9 || at[2] > 3.5 || !sees(at, camera.position, 1)) continue;
+        if (!(floor_t > 0) || at[2] < -2.9 || at[2] > 3.5 || !sees(at, camera.position, 1))
+            continue;
         wall_t = (-3 - at[2]) / ray[2];
         const double on_floor[3] = {at[0], 1e-3, at[2]};
         for (int k = 0; k < 3; k++) at[k] += wall_t * (k == 1 ? -ray[k] : ray[k]);
@@ -364,7 +407,8 @@ static void shadows_follow_a_parameter(void **state) {
     masu_session s;
     shape ball = {0, {0, 1, 0}, {0.5, 0, 0}};
     shapes = &ball, shape_count = 1;
-    bake("moves", GROUND, "param x = 0 [-3, 3];\npart a = translate((x, 1, 0), sphere(0.5));\n", POINT, ", \"reflections\": false");
+    bake("moves", GROUND, "param x = 0 [-3, 3];\npart a = translate((x, 1, 0), sphere(0.5));\n",
+         POINT, ", \"reflections\": false");
     open_scene(&s, "moves");
     for (int i = 0; i < 2; i++) {
         float x = i ? -1.5f : 1.0f;

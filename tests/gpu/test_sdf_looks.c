@@ -56,7 +56,8 @@ static void every_look_is_that_of_the_C(void **state) {
     c.parts = masu_sdfc_field_parts(c.field, &c.count);
     assert_true(c.count == 33);
     c.room = calloc(masu_sdfc_field_room(c.field), sizeof *c.room);
-    const masu_camera camera = {.position = {0, 0, 12}, .forward = {0, 0, -1}, .fov_y = 0.95f, .near_distance = 0.1f};
+    const masu_camera camera = {
+        .position = {0, 0, 12}, .forward = {0, 0, -1}, .fov_y = 0.95f, .near_distance = 0.1f};
     masu_session s;
     masu_session_desc d = test_desc("test_sdf_looks", W, H);
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_NORMAL | MASU_READBACK_ALBEDO;
@@ -73,7 +74,9 @@ static void every_look_is_that_of_the_C(void **state) {
     uint32_t seen[PARTS] = {0}, wrong[PARTS] = {0}, off = 0, holes = 0, missed = 0;
     double high = tan((double)camera.fov_y / 2), eye[3] = {0, 0, 12};
     for (int i = 0; i < W * H; i++) {
-        double way[3] = {(2 * (i % W + 0.5) / W - 1) * high * W / H, (1 - 2 * (i / W + 0.5) / H) * high, -1}, p[3], look[8];
+        double way[3] = {(2 * (i % W + 0.5) / W - 1) * high * W / H,
+                         (1 - 2 * (i / W + 0.5) / H) * high, -1},
+               p[3], look[8];
         uint32_t part = 0;
         double z = (double)depth[i];
         if (!(z > 0)) {
@@ -91,7 +94,8 @@ static void every_look_is_that_of_the_C(void **state) {
         int worst = 0;
         for (int k = 0; k < 3; k++) {
             int should = (int)(255 * sqrt(fmin(fmax(look[k], 0), 1)) + 0.5);
-            worst = abs(should - albedo[4 * i + k]) > worst ? abs(should - albedo[4 * i + k]) : worst;
+            worst =
+                abs(should - albedo[4 * i + k]) > worst ? abs(should - albedo[4 * i + k]) : worst;
         }
         seen[part]++;
         wrong[part] += worst > 12;
@@ -100,11 +104,14 @@ static void every_look_is_that_of_the_C(void **state) {
     for (uint32_t i = 0; i < c.count; i++) {
         hit += seen[i];
         if (seen[i] >= 100 && wrong[i] * 25 <= seen[i]) continue;
-        print_message("part %s: %u of %u pixels have another colour\n", c.parts[i].name, wrong[i], seen[i]);
+        print_message("part %s: %u of %u pixels have another colour\n", c.parts[i].name, wrong[i],
+                      seen[i]);
         bad++;
     }
     assert_int_equal(bad, 0);
-    print_message("%u pixels hit, %u off the surface; %u miss, of which 1 in 7 looked at and %u hit in C\n", hit, off, missed, holes);
+    print_message(
+        "%u pixels hit, %u off the surface; %u miss, of which 1 in 7 looked at and %u hit in C\n",
+        hit, off, missed, holes);
     assert_true(off * 500 < hit && holes * 500 < missed && hit > W * H / 10);
     close_session(&s);
     masu_sdfc_field_close(c.field);

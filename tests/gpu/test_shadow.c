@@ -282,7 +282,8 @@ static void write_leg(const char *name) {
     for (int ring = 0; ring < 2; ring++) {
         for (int side = 0; side < 8; side++) {
             const int a = 8 * ring + side + 1, b = 8 * ring + (side + 1) % 8 + 1;
-            fprintf(file, "f %d//%d %d//%d %d//%d %d//%d\n", a, a, b, b, b + 8, b + 8, a + 8, a + 8);
+            fprintf(file, "f %d//%d %d//%d %d//%d %d//%d\n", a, a, b, b, b + 8, b + 8, a + 8,
+                    a + 8);
         }
     }
     assert_int_equal(fclose(file), 0);

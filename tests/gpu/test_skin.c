@@ -41,7 +41,8 @@ static masu_model model_of(masu_session *s, const char *name) {
 
 static void pose(masu_session *s, const char *name, uint32_t clip, double time) {
     const masu_clip_use use = {.clip = clip, .time = time, .weight = 1.0f};
-    if (masu_model_animate(s->m, model_of(s, name), &use, 1, &failure)) fail_msg("%s", failure.text);
+    if (masu_model_animate(s->m, model_of(s, name), &use, 1, &failure))
+        fail_msg("%s", failure.text);
 }
 
 static masu_commands frame(masu_session *s, uint32_t cut, uint8_t *pixels) {
@@ -96,7 +97,8 @@ static vec decoded(const int16_t normal[2]) {
 static double scale_of(masu_session *s, const masu_skin *skin) {
     float rows[12];
     masu_instance_rows(&s->m->instances.now[skin->instance], rows);
-    return sqrt((double)rows[0] * (double)rows[0] + (double)rows[4] * (double)rows[4] + (double)rows[8] * (double)rows[8]);
+    return sqrt((double)rows[0] * (double)rows[0] + (double)rows[4] * (double)rows[4] +
+                (double)rows[8] * (double)rows[8]);
 }
 
 /* The session has already freed its copy of the blob. */
@@ -127,8 +129,10 @@ static void check_pose(masu_session *s, const char *name, const char *path, uint
     }
     free(truth.vertices);
     double metres = scale_of(s, skin);
-    printf("  %s, clip %u at %.2f s of %.2f: %u vertices, at most %.2g m off of %.2g m moved, normals %.2g rad\n",
-           name, clip, time, truth.duration, skin->vertex_count, worst * metres, moved * metres, turned);
+    printf("  %s, clip %u at %.2f s of %.2f: %u vertices, at most %.2g m off of %.2g m moved, "
+           "normals %.2g rad\n",
+           name, clip, time, truth.duration, skin->vertex_count, worst * metres, moved * metres,
+           turned);
     assert_true(worst * metres < 1e-4);
     assert_true(moved * metres > 0.05);
     assert_true(turned < 2e-3);
@@ -255,7 +259,9 @@ static void project(const seen *e, vec p, double out[3]) {
 
 /* Perspective-correct barycentric coordinates at a pixel's centre; 0: outside the triangle. */
 static int shares_at(const double c[3][3], double x, double y, double out[3]) {
-    double area = (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1]), sum = 0;
+    double area = (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) -
+                  (c[2][0] - c[0][0]) * (c[1][1] - c[0][1]),
+           sum = 0;
     for (int k = 0; k < 3; k++) {
         const double *a = c[(k + 1) % 3], *b = c[(k + 2) % 3];
         double own = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
@@ -305,7 +311,11 @@ static void a_velocity_is_the_difference_of_positions(void **state) {
             if (!shares_at((const double(*)[3])now, i % W + 0.5, i / W + 0.5, share)) continue;
             double own = share[0] * now[0][2] + share[1] * now[1][2] + share[2] * now[2][2];
             if (fabs(own - (double)z[i]) > 1e-3 * own) continue; /* another surface is in front */
-            project(&e, vec_add(vec_scale(before[0], share[0]), vec_add(vec_scale(before[1], share[1]), vec_scale(before[2], share[2]))), was);
+            project(
+                &e,
+                vec_add(vec_scale(before[0], share[0]),
+                        vec_add(vec_scale(before[1], share[1]), vec_scale(before[2], share[2]))),
+                was);
             double x = half_float(velocity[4 * i]), y = half_float(velocity[4 * i + 1]);
             worst = fmax(worst, hypot(x - (was[0] - (i % W + 0.5)), y - (was[1] - (i / W + 0.5))));
             most = fmax(most, hypot(x, y));
@@ -344,17 +354,19 @@ static void write_pose(masu_session *s, const char *name, const char *file) {
                  (double)rows[4] * n.x + (double)rows[5] * n.y + (double)rows[6] * n.z,
                  (double)rows[8] * n.x + (double)rows[9] * n.y + (double)rows[10] * n.z};
         w = vec_unit(w); /* uniformly scaled */
-        used += (size_t)snprintf(text + used, sizeof text - used, "v %.9g %.9g %.9g\nvn %.9g %.9g %.9g\n",
-                                 p.x, p.y, p.z, w.x, w.y, w.z);
+        used +=
+            (size_t)snprintf(text + used, sizeof text - used,
+                             "v %.9g %.9g %.9g\nvn %.9g %.9g %.9g\n", p.x, p.y, p.z, w.x, w.y, w.z);
     }
     for (uint32_t k = 0; k < mesh->primitive_count; k++) {
         const masu_blob_primitive *p = &v.primitives[mesh->first_primitive + k];
         for (uint32_t t = 0; t < p->index_count; t += 3) {
             uint32_t c[3];
             for (int i = 0; i < 3; i++)
-                c[i] = indices[p->first_index + t + (uint32_t)i] + p->first_vertex - skin->first_vertex + 1;
-            used += (size_t)snprintf(text + used, sizeof text - used, "f %u//%u %u//%u %u//%u\n", c[0],
-                                     c[0], c[1], c[1], c[2], c[2]);
+                c[i] = indices[p->first_index + t + (uint32_t)i] + p->first_vertex -
+                       skin->first_vertex + 1;
+            used += (size_t)snprintf(text + used, sizeof text - used, "f %u//%u %u//%u %u//%u\n",
+                                     c[0], c[0], c[1], c[1], c[2], c[2]);
         }
     }
     free(blob);
@@ -372,7 +384,8 @@ static void take(masu_session *s, picture *out) {
     masu_commands commands = {0};
     for (uint32_t i = 0; i < 12; i++) commands = frame(s, i == 0, out->rgba);
     memcpy(out->depth, read_image(s, commands.slot, MASU_READBACK_DEPTH), sizeof out->depth);
-    memcpy(out->occlusion, read_image(s, commands.slot, MASU_READBACK_OCCLUSION), sizeof out->occlusion);
+    memcpy(out->occlusion, read_image(s, commands.slot, MASU_READBACK_OCCLUSION),
+           sizeof out->occlusion);
 }
 
 /* Pixels whose depth, sunlight, and colour differ. */
@@ -380,7 +393,8 @@ static void compare(const picture *a, const picture *b, uint32_t off[3]) {
     memset(off, 0, 3 * sizeof *off);
     for (uint32_t i = 0; i < PIXELS; i++) {
         int colour = 0;
-        for (uint32_t k = 0; k < 3; k++) colour |= abs(a->rgba[4 * i + k] - b->rgba[4 * i + k]) > 12;
+        for (uint32_t k = 0; k < 3; k++)
+            colour |= abs(a->rgba[4 * i + k] - b->rgba[4 * i + k]) > 12;
         off[0] += fabsf(a->depth[i] - b->depth[i]) > 1e-3f * fmaxf(a->depth[i], b->depth[i]);
         off[1] += fabs(sun_share(a->occlusion, i) - sun_share(b->occlusion, i)) > 0.25;
         off[2] += (uint32_t)colour;
@@ -404,16 +418,21 @@ static void a_pose_looks_like_a_mesh_baked_so(void **state) {
     write_pose(&s, "bear", "bear.obj");
     snprintf(copy[0], sizeof copy[0], "%s", in_scratch("arm.obj"));
     snprintf(copy[1], sizeof copy[1], "%s", in_scratch("bear.obj"));
-    snprintf(json, sizeof json,
-             "{\"models\": ["
-             "{\"mesh\": {\"plane\": {\"size_x\": 16, \"size_z\": 16}}, \"material\": {\"base_color\": [0.6, 0.6, 0.6], \"roughness\": 0, \"metallic\": 1}},"
-             "{\"mesh\": {\"box\": {\"size\": [10, 4, 0.2]}}, \"translate\": [0, 2, -1.5], \"material\": {\"base_color\": [0.6, 0.6, 0.5], \"roughness\": 0.9}},"
-             "{\"file\": \"%s\", \"material\": {\"base_color\": [0.8, 0.3, 0.1], \"roughness\": 0.6}},"
-             "{\"file\": \"%s\", \"material\": {\"base_color\": [0.5, 0.4, 0.3], \"roughness\": 0.7}}],"
-             "\"camera\": {\"fov_y\": 50, \"near\": 0.1, \"keys\": [{\"time\": 0, \"position\": [0.4, 2.0, 5.5], \"target\": [0, 0.8, 0]}]},"
-             "\"sun\": {\"azimuth\": 30, \"elevation\": 40, \"shadows\": {\"cascades\": 2, \"resolution\": 1024, \"distance\": 20}},"
-             "\"lods\": 0, \"reflections\": {}}",
-             copy[0], copy[1]);
+    snprintf(
+        json, sizeof json,
+        "{\"models\": ["
+        "{\"mesh\": {\"plane\": {\"size_x\": 16, \"size_z\": 16}}, \"material\": {\"base_color\": "
+        "[0.6, 0.6, 0.6], \"roughness\": 0, \"metallic\": 1}},"
+        "{\"mesh\": {\"box\": {\"size\": [10, 4, 0.2]}}, \"translate\": [0, 2, -1.5], "
+        "\"material\": {\"base_color\": [0.6, 0.6, 0.5], \"roughness\": 0.9}},"
+        "{\"file\": \"%s\", \"material\": {\"base_color\": [0.8, 0.3, 0.1], \"roughness\": 0.6}},"
+        "{\"file\": \"%s\", \"material\": {\"base_color\": [0.5, 0.4, 0.3], \"roughness\": 0.7}}],"
+        "\"camera\": {\"fov_y\": 50, \"near\": 0.1, \"keys\": [{\"time\": 0, \"position\": [0.4, "
+        "2.0, 5.5], \"target\": [0, 0.8, 0]}]},"
+        "\"sun\": {\"azimuth\": 30, \"elevation\": 40, \"shadows\": {\"cascades\": 2, "
+        "\"resolution\": 1024, \"distance\": 20}},"
+        "\"lods\": 0, \"reflections\": {}}",
+        copy[0], copy[1]);
     close_session(&s);
     bake_scene("posed", json);
     d = desc_of(NULL);
@@ -422,7 +441,8 @@ static void a_pose_looks_like_a_mesh_baked_so(void **state) {
     take(&t, &baked);
     close_session(&t);
     compare(&live, &still, off);
-    printf("  from the rest pose: %u pixels differ in depth, %u in sunlight, %u in colour\n", off[0], off[1], off[2]);
+    printf("  from the rest pose: %u pixels differ in depth, %u in sunlight, %u in colour\n",
+           off[0], off[1], off[2]);
     assert_true(off[0] > PIXELS / 60);
     assert_true(off[1] > PIXELS / 200);
     assert_true(off[2] > PIXELS / 40);

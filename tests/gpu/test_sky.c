@@ -176,9 +176,11 @@ static void metals_mirror_the_sky_by_their_roughness(void **state) {
                     least = fmin(least, ratio[c]);
                     most = fmax(most, ratio[c]);
                 }
-                apart = worst_of(apart, fmax(fabs(ratio[0] / ratio[1] - 1), fabs(ratio[2] / ratio[1] - 1)));
+                apart = worst_of(
+                    apart, fmax(fabs(ratio[0] / ratio[1] - 1), fabs(ratio[2] / ratio[1] - 1)));
             }
-            print_message("roughness %.2f, sun at %g: %u pixels, %.4f to %.4f of the twin, colours apart by %.4f\n",
+            print_message("roughness %.2f, sun at %g: %u pixels, %.4f to %.4f of the twin, colours "
+                          "apart by %.4f\n",
                           roughness[b], azimuths[a], seen, least, most, apart);
             assert_true(seen > 60 && apart < 0.02 && most < 1.15 * least);
         }
@@ -249,7 +251,8 @@ static void write_picture(const char *path) {
     static float rgb[WIDE * HIGH * 3];
     char error[256];
     for (int i = 0; i < WIDE * HIGH; i++) {
-        double polar = (i / WIDE + 0.5) / HIGH * PI, azimuth = (0.5 - (i % WIDE + 0.5) / WIDE) * 2 * PI;
+        double polar = (i / WIDE + 0.5) / HIGH * PI,
+               azimuth = (0.5 - (i % WIDE + 0.5) / WIDE) * 2 * PI;
         const float d[3] = {(float)(sin(polar) * sin(azimuth)), (float)cos(polar),
                             (float)(sin(polar) * cos(azimuth))};
         for (int c = 0; c < 3; c++) rgb[3 * i + c] = (float)(0.5 * linear_sky(d, c, 1));
@@ -259,7 +262,8 @@ static void write_picture(const char *path) {
 
 static void bake_picture(void) {
     static const char json[] =
-        "{\"models\": [{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 6}}, \"material\": "
+        "{\"models\": [{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 6}}, "
+        "\"material\": "
         "{\"base_color\": [0.64, 0.64, 0.64], \"roughness\": 1, \"specular\": 0}}], \"sun\": "
         "{\"intensity\": 0}, \"environment\": {\"file\": \"sky.pfm\", \"scale\": 2, \"size\": 64}}";
     write_picture(in_scratch("sky.pfm"));
@@ -291,7 +295,8 @@ static void a_picture_is_seen_and_lights(void **state) {
             for (int c = 0; c < 3; c++) {
                 double got = half_float(hdr[4 * i + (uint32_t)c]);
                 if (depth[i] > 0) {
-                    light_error = worst_of(light_error, fabs(got - 0.64 * linear_sky(n, c, 2.0 / 3)));
+                    light_error =
+                        worst_of(light_error, fabs(got - 0.64 * linear_sky(n, c, 2.0 / 3)));
                     lit++;
                 } else {
                     sky_error = worst_of(sky_error, fabs(got - linear_sky(ray, c, 1)));

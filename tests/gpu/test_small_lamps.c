@@ -25,9 +25,12 @@ static glow glow_of(const char *models, const char *lights) {
     char json[2048];
     glow g = {0};
     snprintf(json, sizeof json,
-             "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 12, \"size_z\": 12}}, \"material\": {\"base_color\": "
-             "[0.9, 0.9, 0.9], \"metallic\": 1, \"roughness\": 0.3}}%s], \"lights\": [%s], \"reflections\": {}, "
-             "\"ambient\": [0, 0, 0], \"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, \"sun\": "
+             "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 12, \"size_z\": 12}}, "
+             "\"material\": {\"base_color\": "
+             "[0.9, 0.9, 0.9], \"metallic\": 1, \"roughness\": 0.3}}%s], \"lights\": [%s], "
+             "\"reflections\": {}, "
+             "\"ambient\": [0, 0, 0], \"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, "
+             "\"sun\": "
              "{\"intensity\": 0}}",
              models, lights);
     bake_scene("lamp", json);
@@ -37,7 +40,8 @@ static glow glow_of(const char *models, const char *lights) {
     d.desc.readback = MASU_READBACK_HDR;
     d.desc.frames_in_flight = 1;
     open_session(&s, &d);
-    masu_camera camera = {.position = {0, 1.5, 6}, .forward = {0, -0.3f, -1}, .fov_y = 0.5f, .near_distance = 0.05f};
+    masu_camera camera = {
+        .position = {0, 1.5, 6}, .forward = {0, -0.3f, -1}, .fov_y = 0.5f, .near_distance = 0.05f};
     memset(sum, 0, sizeof sum);
     memset(square, 0, sizeof square);
     for (int i = 0; i < FRAMES; i++) {
@@ -63,12 +67,15 @@ static glow glow_of(const char *models, const char *lights) {
 
 static void rays_and_lobe_share_the_light(void **state) {
     (void)state;
-    const char *ball = ", {\"mesh\": {\"sphere\": {\"radius\": 0.05, \"subdivisions\": 3}}, \"translate\": [0, 1, 0], "
-                       "\"traced\": true, \"material\": {\"base_color\": [0, 0, 0], \"emissive\": [16, 14, 10]}%s}";
+    const char *ball = ", {\"mesh\": {\"sphere\": {\"radius\": 0.05, \"subdivisions\": 3}}, "
+                       "\"translate\": [0, 1, 0], "
+                       "\"traced\": true, \"material\": {\"base_color\": [0, 0, 0], \"emissive\": "
+                       "[16, 14, 10]}%s}";
     char with[512], without[512];
     snprintf(with, sizeof with, ball, "");
     snprintf(without, sizeof without, ball, ", \"area_light\": false");
-    glow alone = glow_of("", "{\"type\": \"sphere\", \"position\": [0, 1, 0], \"radius\": 0.05, \"color\": [16, 14, 10], "
+    glow alone = glow_of("", "{\"type\": \"sphere\", \"position\": [0, 1, 0], \"radius\": 0.05, "
+                             "\"color\": [16, 14, 10], "
                              "\"range\": 100}");
     glow shared = glow_of(with, ""), rays = glow_of(without, "");
     print_message("  light %.4g as a light, %.4g shared, %.4g by rays; deviation %.2f, %.2f, %.2f "

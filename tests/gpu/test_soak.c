@@ -63,8 +63,9 @@ static VkCommandBuffer frame_of(own_renderer *x, const masu_frame_desc *frame) {
     assert_ok(masu_headless_run(&opened[0].host, commands.buffer, error, sizeof error));
     masu_frame_wall(x->m, commands.slot, 0.1 + 30.0 * (double)share());
     assert_int_equal(masu_stats(x->m, commands.slot, &stats, &failure), MASU_OK);
-    if (stats.replaced) fail_msg("frame %llu: %llu values replaced", (unsigned long long)commands.frame,
-                                 (unsigned long long)stats.replaced);
+    if (stats.replaced)
+        fail_msg("frame %llu: %llu values replaced", (unsigned long long)commands.frame,
+                 (unsigned long long)stats.replaced);
     return commands.buffer;
 }
 
@@ -116,10 +117,11 @@ static void soak(uint32_t frames) {
         }
         if (i % SIZE_FRAMES == SIZE_FRAMES - 1) resize(&x, 1 + roll(W), 1 + roll(H));
         if (roll(4) == 0) change(&x, scene);
-        masu_camera c = {.position = {4 * (double)share() - 2, 0.5 + 2 * (double)share(), 6 * (double)share()},
-                         .forward = {share() - 0.5f, share() - 0.7f, -1},
-                         .fov_y = 0.2f + 2.5f * share(),
-                         .near_distance = 0.05f};
+        masu_camera c = {
+            .position = {4 * (double)share() - 2, 0.5 + 2 * (double)share(), 6 * (double)share()},
+            .forward = {share() - 0.5f, share() - 0.7f, -1},
+            .fov_y = 0.2f + 2.5f * share(),
+            .near_distance = 0.05f};
         masu_frame_desc frame = {MASU_FRAME_DESC, .camera = roll(3) ? &c : NULL,
                                  .time = 100.0 * (double)share(),
                                  .time_step = roll(5) ? 1.0f / 60 : 10 * share(),
@@ -138,12 +140,14 @@ static int64_t bare(uint32_t frames) {
         char error[ERROR_SIZE];
         VkCommandBuffer rungs[5];
         make(&x, scene);
-        for (uint32_t r = 0; r < 5; r++) rungs[r] = frame_of(&x, &(masu_frame_desc){MASU_FRAME_DESC, .rung = r});
+        for (uint32_t r = 0; r < 5; r++)
+            rungs[r] = frame_of(&x, &(masu_frame_desc){MASU_FRAME_DESC, .rung = r});
         uint64_t before = heap();
         for (uint32_t i = 0; i < frames / SCENES; i++)
             assert_ok(masu_headless_run(&opened[0].host, rungs[i % 5], error, sizeof error));
         int64_t more = (int64_t)heap() - (int64_t)before;
-        printf("  bare: %s: %.3f KB a frame\n", scenes[scene], (double)more / 1e3 / (frames / SCENES));
+        printf("  bare: %s: %.3f KB a frame\n", scenes[scene],
+               (double)more / 1e3 / (frames / SCENES));
         grown += more;
         unmake_own(&opened[0], &x);
     }
@@ -185,6 +189,7 @@ static void memory_is_flat_and_nothing_is_left_of_what_was(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_is_flat_and_nothing_is_left_of_what_was)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(memory_is_flat_and_nothing_is_left_of_what_was)};
     return cmocka_run_group_tests_name("soak", tests, NULL, NULL);
 }

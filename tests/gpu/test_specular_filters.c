@@ -23,36 +23,47 @@ static char error[1024];
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
 /* A checker of four, spheres from a mirror to a rough one, a moving box, an emissive one. */
-#define BALL(x, roughness)                                                                           \
-    "{\"mesh\": {\"sphere\": {\"radius\": 0.6, \"subdivisions\": 4}}, \"translate\": [" x ", 0.6, 0],"    \
-    "\"material\": {\"base_color\": [0.9, 0.85, 0.8], \"roughness\": " roughness ", \"metallic\": 1}},"
+#define BALL(x, roughness)                                                                         \
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.6, \"subdivisions\": 4}}, \"translate\": [" x          \
+    ", 0.6, 0],"                                                                                   \
+    "\"material\": {\"base_color\": [0.9, 0.85, 0.8], \"roughness\": " roughness                   \
+    ", \"metallic\": 1}},"
 #define TILE(x, z, color)                                                                            \
     "{\"mesh\": {\"plane\": {\"size_x\": 4, \"size_z\": 4}}, \"translate\": [" x ", 0, " z "],"             \
     "\"material\": {\"base_color\": [" color "], \"roughness\": 0.3}},"
-static const char spheres[] =
-    "{\"models\": [" TILE("-2", "-2", "0.7, 0.7, 0.7") TILE("2", "-2", "0.1, 0.1, 0.1")
-        TILE("-2", "2", "0.1, 0.1, 0.1") TILE("2", "2", "0.7, 0.7, 0.7")
-            BALL("-1.4", "0") BALL("0", "0.12") BALL("1.4", "0.35")
-    "{\"name\": \"moving\", \"mesh\": {\"box\": {\"size\": [0.6, 0.6, 0.6]}}, \"translate\": [0, 0.5, 1.5],"
-    "\"material\": {\"base_color\": [0.9, 0.8, 0.1], \"roughness\": 0.7}},"
-    "{\"mesh\": {\"box\": {\"size\": [0.3, 1.6, 0.3]}}, \"translate\": [-2.6, 0.8, 1.2],"
-    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [4, 3, 2], \"roughness\": 1}}],"
-    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"time\": 0, \"position\": [0, 2.2, 5],"
-    "\"target\": [0, 0.5, 0]}, {\"time\": 4, \"position\": [2, 1.8, 4.6], \"target\": [0, 0.5, 0]}]},"
-    "\"sun\": {\"azimuth\": 40, \"elevation\": 45, \"intensity\": 2},"
-    "\"ambient\": [0.3, 0.33, 0.4], \"sky\": {\"zenith\": [0.25, 0.4, 0.8], \"horizon\": [0.7, 0.75, 0.85]},"
-    "\"reflections\": {\"cutoff\": 0.5}}";
+static const char spheres[] = "{\"models\": [" TILE("-2", "-2", "0.7, 0.7, 0.7")
+    TILE("2", "-2", "0.1, 0.1, 0.1") TILE("-2", "2", "0.1, 0.1, 0.1")
+        TILE("2", "2", "0.7, 0.7, 0.7") BALL("-1.4", "0") BALL("0", "0.12") BALL(
+            "1.4", "0.35") "{\"name\": \"moving\", \"mesh\": {\"box\": {\"size\": [0.6, 0.6, "
+                           "0.6]}}, \"translate\": [0, 0.5, 1.5],"
+                           "\"material\": {\"base_color\": [0.9, 0.8, 0.1], \"roughness\": 0.7}},"
+                           "{\"mesh\": {\"box\": {\"size\": [0.3, 1.6, 0.3]}}, \"translate\": "
+                           "[-2.6, 0.8, 1.2],"
+                           "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [4, 3, 2], "
+                           "\"roughness\": 1}}],"
+                           "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"time\": 0, "
+                           "\"position\": [0, 2.2, 5],"
+                           "\"target\": [0, 0.5, 0]}, {\"time\": 4, \"position\": [2, 1.8, 4.6], "
+                           "\"target\": [0, 0.5, 0]}]},"
+                           "\"sun\": {\"azimuth\": 40, \"elevation\": 45, \"intensity\": 2},"
+                           "\"ambient\": [0.3, 0.33, 0.4], \"sky\": {\"zenith\": [0.25, 0.4, 0.8], "
+                           "\"horizon\": [0.7, 0.75, 0.85]},"
+                           "\"reflections\": {\"cutoff\": 0.5}}";
 
 /* White spheres under a white sky, no sun: all incoming light is reflected. */
 #define WHITE(x, roughness)                                                                          \
     "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [" x ", 0, 0],"        \
     "\"material\": {\"base_color\": [1, 1, 1], \"roughness\": " roughness ", \"metallic\": 1}}"
 static const char furnace[] =
-    "{\"models\": [" WHITE("-2.2", "0") "," WHITE("-1.1", "0.1") "," WHITE("0", "0.2") ","
-        WHITE("1.1", "0.3") "," WHITE("2.2", "0.36") "],"
-    "\"camera\": {\"fov_y\": 35, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 6], \"target\": [0, 0, 0]}]},"
-    "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
-    "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
+    "{\"models\": [" WHITE("-2.2", "0") "," WHITE("-1.1", "0.1") "," WHITE("0", "0.2") "," WHITE(
+        "1.1", "0.3") "," WHITE("2.2",
+                                "0.36") "],"
+                                        "\"camera\": {\"fov_y\": 35, \"near\": 0.05, \"keys\": "
+                                        "[{\"position\": [0, 0, 6], \"target\": [0, 0, 0]}]},"
+                                        "\"sun\": {\"azimuth\": 0, \"elevation\": 45, "
+                                        "\"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
+                                        "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, "
+                                        "0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
 
 /* Panels of rough metal that reflect only the sky: one rotates about its centre, and one slides
  * away from the front of another with the same orientation. There is no other light. */
@@ -60,12 +71,16 @@ static const char furnace[] =
     "{\"name\": \"" name "\", \"mesh\": {\"box\": {\"size\": [" width ", 1.6, 0.05]}},"                    \
     "\"translate\": [" x ", 0, " z "],"                                                               \
     "\"material\": {\"base_color\": [0.9, 0.9, 0.9], \"roughness\": 0.3, \"metallic\": 1}}"
-static const char panels[] =
-    "{\"models\": [" PANEL("turning", "1.2", "-1", "0") "," PANEL("sliding", "0.8", "0.7", "1") ","
-        PANEL("behind", "1.6", "1", "0") "],"
-    "\"camera\": {\"fov_y\": 35, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 4], \"target\": [0, 0, 0]}]},"
-    "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
-    "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
+static const char panels[] = "{\"models\": [" PANEL("turning", "1.2", "-1", "0") "," PANEL(
+    "sliding", "0.8", "0.7",
+    "1") "," PANEL("behind", "1.6", "1",
+                   "0") "],"
+                        "\"camera\": {\"fov_y\": 35, \"near\": 0.05, \"keys\": [{\"position\": [0, "
+                        "0, 4], \"target\": [0, 0, 0]}]},"
+                        "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, "
+                        "\"ambient\": [0.5, 0.5, 0.5],"
+                        "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, "
+                        "\"reflections\": {\"cutoff\": 0.5}}";
 
 /* A red box moves over a smooth metal floor, in front of a grey wall. */
 #define GLIDE(roughness)                                                                             \
@@ -89,15 +104,18 @@ static void make_fence(char *text, size_t size) {
             text + at, size - at,
             "{\"mesh\": {\"box\": {\"size\": [0.084, 2.2, 0.084]}}, \"rotate\": [0, 45, 0],"
             "\"translate\": [%.4f, 0, 0],"
-            "\"material\": {\"base_color\": [0.9, 0.9, 0.9], \"roughness\": 0.32, \"metallic\": 1}},",
+            "\"material\": {\"base_color\": [0.9, 0.9, 0.9], \"roughness\": 0.32, \"metallic\": "
+            "1}},",
             0.119 * (i - BARS / 2));
     }
     snprintf(text + at, size - at,
              "{\"mesh\": {\"box\": {\"size\": [0.2, 6, 6]}}, \"translate\": [-4.5, 0, 2],"
-             "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [2, 1.2, 0.5], \"roughness\": 1}}],"
+             "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [2, 1.2, 0.5], "
+             "\"roughness\": 1}}],"
              "\"camera\": {\"fov_y\": 30, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 6],"
              "\"target\": [0, 0, 0]}]},"
-             "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.2, 0.2, 0.2],"
+             "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.2, "
+             "0.2, 0.2],"
              "\"sky\": {\"zenith\": [0.1, 0.2, 0.5], \"horizon\": [0.3, 0.3, 0.35]},"
              "\"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}");
 }
@@ -188,7 +206,8 @@ static void a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each(v
     run.frames = 40;
     assert_ok(masu_specular_draw(&s, &run, NULL, classes, &flicker, error, sizeof error));
     close_session(&s);
-    printf("relMSE: %d rays %.4f, none %.4f, without temporal %.4f, all %.4f, camera %.4f, object %.4f, "
+    printf("relMSE: %d rays %.4f, none %.4f, without temporal %.4f, all %.4f, camera %.4f, object "
+           "%.4f, "
            "jump %.4f; flicker %.3f\n",
            RAYS, rays, none, still, rest, camera, object, jump, flicker);
     assert_true(rest < 0.25 * none && rest < 0.5 * still && still < none);
@@ -251,7 +270,8 @@ static void what_other_images_left_behind_is_not_seen(void **state) {
         open_session(&s, &d);
         run = run_of(MASU_SPECULAR_CAMERA);
         run.frames = 6;
-        assert_ok(masu_specular_draw(&s, &run, poison ? picture : other, NULL, NULL, error, sizeof error));
+        assert_ok(masu_specular_draw(&s, &run, poison ? picture : other, NULL, NULL, error,
+                                     sizeof error));
         close_session(&s);
         for (uint32_t i = 0; poison && i < 3 * PIXELS; i++)
             assert_true(isfinite(picture[i]) && picture[i] == other[i]);
@@ -279,7 +299,8 @@ static void the_frame_rate_does_not_change_what_is_remembered(void **state) {
         run.frames = slow ? 36 : 40;
         assert_ok(masu_specular_draw(&s, &run, other, NULL, NULL, error, sizeof error));
         close_session(&s);
-        left[slow] = masu_specular_compare(picture, other, classes, PIXELS).value[MASU_SPECULAR_ROUGH];
+        left[slow] =
+            masu_specular_compare(picture, other, classes, PIXELS).value[MASU_SPECULAR_ROUGH];
     }
     printf("left after 8/60 s: %.6f at 60 Hz, %.6f at 30 Hz\n", left[0], left[1]);
     assert_true(left[0] > 0 && left[1] < 2 * left[0] && left[0] < 2 * left[1]);
@@ -307,7 +328,8 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
             draw(&s, &f, &commands, NULL);
         }
         assert_true(masu_specular_read(&s, picture));
-        errors[way] = masu_specular_compare(picture, truth, classes, PIXELS).value[MASU_SPECULAR_ROUGH];
+        errors[way] =
+            masu_specular_compare(picture, truth, classes, PIXELS).value[MASU_SPECULAR_ROUGH];
         close_session(&s);
     }
     printf("same size %.4f, another %.4f, cut %.4f\n", errors[0], errors[1], errors[2]);
@@ -364,7 +386,8 @@ static void means_of_pixels_are_not_taken_up_after_a_rung_without(void **state) 
         assert_int_equal(masu_camera_at(s.m, 0.8, &camera, NULL), MASU_OK);
         for (uint32_t k = 0; k < 12; k++) {
             assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
-            for (int c = 0; way && k < 4 && c < 3; c++) light.sky_zenith[c] = light.sky_horizon[c] = 20;
+            for (int c = 0; way && k < 4 && c < 3; c++)
+                light.sky_zenith[c] = light.sky_horizon[c] = 20;
             masu_frame_desc f = {.camera = &camera,
                                  .light = &light,
                                  .time_step = 1.0f / 60.0f,
@@ -387,17 +410,20 @@ static void red_then_blue(bool cut, float *rgb, float depths[2][PIXELS]) {
     open_session(&s, &d);
     for (uint32_t k = 0; k < 13; k++) {
         bool last = k == 12;
-        float c = cosf(0.4363f), n = last ? sinf(0.4363f) : -sinf(0.4363f); /* 25 degrees to either side */
+        float c = cosf(0.4363f),
+              n = last ? sinf(0.4363f) : -sinf(0.4363f); /* 25 degrees to either side */
         masu_light light;
         masu_commands commands;
         place_instance(&s, "turning", (float[12]){c, 0, n, -1, 0, 1, 0, 0, -n, 0, c, 0});
         move_instance(&s, "sliding", last ? 4 : 0.7f, 0, 1, 1);
         assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
         light.sky_zenith[last ? 0 : 2] = light.sky_horizon[last ? 0 : 2] = 0.1f;
-        masu_frame_desc f = {.light = &light, .time_step = 1.0f / 60.0f, .cut = k == 0 || (last && cut)};
+        masu_frame_desc f = {
+            .light = &light, .time_step = 1.0f / 60.0f, .cut = k == 0 || (last && cut)};
         draw(&s, &f, &commands, NULL);
         if (k < 11) continue;
-        memcpy(depths[k - 11], read_image(&s, masu_specular_slot(&s), MASU_READBACK_DEPTH), sizeof depths[0]);
+        memcpy(depths[k - 11], read_image(&s, masu_specular_slot(&s), MASU_READBACK_DEPTH),
+               sizeof depths[0]);
     }
     assert_true(masu_specular_read(&s, rgb));
     close_session(&s);

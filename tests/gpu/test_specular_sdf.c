@@ -79,7 +79,8 @@ static stage open_stage(const char *name, const masu_camera *camera) {
     open_session(&s.session, &d);
     snprintf(file, sizeof file, "%s.truth.so", name);
     assert_ok(masu_truth_open(stiff_path(file), &s.truth, error, sizeof error));
-    assert_ok(masu_view_of(&s.session.scene, camera, 0.0, 2 * W, 2 * H, &s.view, error, sizeof error));
+    assert_ok(
+        masu_view_of(&s.session.scene, camera, 0.0, 2 * W, 2 * H, &s.view, error, sizeof error));
     s.blob = masu_scene_view_of(&s.session.scene);
     assert_non_null(s.blob.reflections);
     assert_true(2 * s.blob.slot_count <= SLOTS);
@@ -174,7 +175,8 @@ static void make_rays(const stage *s, double rough, double inside, uint32_t ever
         own.guide[2 * i + 1] = (bits_of_float(depth) & ~7u) | k;
         double d[3], along = dot3(ray.direction, seen.normal), up = 0;
         for (int c = 0; c < 3; c++) {
-            d[c] = ray.direction[c] - 2 * along * seen.normal[c] + rough * (2 * (double)random_float(&state) - 1);
+            d[c] = ray.direction[c] - 2 * along * seen.normal[c] +
+                   rough * (2 * (double)random_float(&state) - 1);
             up += d[c] * seen.normal[c];
         }
         for (int c = 0; c < 3 && up < 0; c++) d[c] -= 2 * up * seen.normal[c];
@@ -275,9 +277,9 @@ static figures judge(stage *s, const char *name, double rough, uint32_t every) {
     trace(s);
     figures f = compare(s);
     double rays = f.rays;
-    printf("| %s | %.2f | %u | %.1f | %.3f | %.4f | %.3f | %.2f | %u | %.1f | %.3f | %.2f |\n", name,
-           rough, f.rays, 100 * f.true_hits / rays, 100 * f.wrong / rays, f.off_p50, f.off_p99,
-           f.angle_p99, f.other_parts, (double)s->job.evals / rays,
+    printf("| %s | %.2f | %u | %.1f | %.3f | %.4f | %.3f | %.2f | %u | %.1f | %.3f | %.2f |\n",
+           name, rough, f.rays, 100 * f.true_hits / rays, 100 * f.wrong / rays, f.off_p50,
+           f.off_p99, f.angle_p99, f.other_parts, (double)s->job.evals / rays,
            100 * (double)s->job.unconverged / rays, 100 * f.unsure / rays);
     fflush(stdout);
     assert_true(f.rays > TEXELS / every / 3);
@@ -296,8 +298,10 @@ static void hits_are_those_of_the_truth(void **unused) {
     (void)unused;
     static const char *const scenes[] = {"mirrors", "pebbles"};
     static const double rough[] = {0, 0.3};
-    printf("| scene | scatter | rays | true hits %% | hit/miss %% | distance p50, pixels | p99 | normal p99 | other "
-           "parts | evaluations | unconverged %% | undecided %% |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    printf("| scene | scatter | rays | true hits %% | hit/miss %% | distance p50, pixels | p99 | "
+           "normal p99 | other "
+           "parts | evaluations | unconverged %% | undecided %% "
+           "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < 2; i++) {
         stage s = open_stage(scenes[i], &around);
         for (int k = 0; k < 2; k++) {
@@ -418,7 +422,8 @@ static void check_sane(const stage *s, const char *what) {
     for (uint32_t i = 0; i < TEXELS; i++) {
         if (!memcmp(own.hit + 4 * i, own.before + 4 * i, 16)) continue;
         float t = float_of_bits(own.hit[4 * i]), n[3], before = float_of_bits(own.before[4 * i]);
-        if (!isfinite(t) || !(t >= 0) || !sdf_wins(i)) fail_msg("%s: texel %u: %g", what, i, (double)t);
+        if (!isfinite(t) || !(t >= 0) || !sdf_wins(i))
+            fail_msg("%s: texel %u: %g", what, i, (double)t);
         if (before >= 0 && !(t <= before)) fail_msg("%s: texel %u: behind the polygon", what, i);
         masu_unpack_normal(own.hit[4 * i + 2], n);
         assert_true(isfinite(n[0]) && isfinite(n[1]) && isfinite(n[2]));
@@ -429,11 +434,13 @@ static void check_sane(const stage *s, const char *what) {
 static void any_bits_give_finite_hits(void **unused) {
     (void)unused;
     static const char *const scenes[] = {"mirrors", "pebbles"};
-    static const float senseless[] = {NAN, INFINITY, -INFINITY, 3.4e38f, -3.4e38f, 1e-42f, 0, 1e10f};
+    static const float senseless[] = {NAN,      INFINITY, -INFINITY, 3.4e38f,
+                                      -3.4e38f, 1e-42f,   0,         1e10f};
     for (uint32_t i = 0; i < trials(2, 2, 1); i++) {
         stage s = open_stage(scenes[i], &around);
         state = 5;
-        for (uint32_t k = 0; k < 2 * TEXELS; k++) own.guide[k] = random_word(&state), own.ray[k] = random_word(&state);
+        for (uint32_t k = 0; k < 2 * TEXELS; k++)
+            own.guide[k] = random_word(&state), own.ray[k] = random_word(&state);
         for (uint32_t k = 0; k < 4 * TEXELS; k++) own.before[k] = random_word(&state);
         trace(&s);
         check_sane(&s, "bits");
@@ -473,9 +480,11 @@ static void picture_of(const char *path, const masu_camera *camera, uint8_t *to,
     assert_int_equal(masu_stats(s.m, commands.slot, stats, NULL), MASU_OK);
     if (hdr) {
         masu_readback_image image;
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL),
+                         MASU_OK);
         for (uint32_t y = 0; y < HIGH; y++)
-            memcpy(hdr + 4 * WIDE * y, (const uint8_t *)image.pixels + y * image.row_bytes, 8 * WIDE);
+            memcpy(hdr + 4 * WIDE * y, (const uint8_t *)image.pixels + y * image.row_bytes,
+                   8 * WIDE);
     }
     close_session(&s);
     assert_int_equal(stats->replaced, 0);
@@ -492,9 +501,10 @@ static void a_million_units_away_it_is_the_same(void **unused) {
     assert_true(stats[0].specular_sdf_hits > stats[0].specular_rays / 10);
     assert_int_equal(stats[0].specular_hits, 0);
     uint32_t other = 0;
-    for (uint32_t i = 0; i < PIXELS; i++) other += max_difference(&shown[0][4 * i], &shown[1][4 * i], 3) > 8;
-    printf("  %u of %d pixels differ by more than 8; %llu and %llu hits of %llu rays\n", other, PIXELS,
-           (unsigned long long)stats[0].specular_sdf_hits,
+    for (uint32_t i = 0; i < PIXELS; i++)
+        other += max_difference(&shown[0][4 * i], &shown[1][4 * i], 3) > 8;
+    printf("  %u of %d pixels differ by more than 8; %llu and %llu hits of %llu rays\n", other,
+           PIXELS, (unsigned long long)stats[0].specular_sdf_hits,
            (unsigned long long)stats[1].specular_sdf_hits,
            (unsigned long long)stats[0].specular_rays);
     assert_true(other * 100 <= PIXELS);
@@ -508,8 +518,9 @@ typedef struct ball {
     int color; /* 0 red: SDF; 1 green: polygons */
 } ball;
 
-static const ball balls[] = {{{-3, 1, -1}, 0.5, 0},    {{-1.5, 1, -1}, 0.5, 1}, {{1.5, 1, -1}, 0.5, 0},
-                             {{3, 1, -1}, 0.5, 1},     {{0.4, 1, -1}, 0.4, 0},  {{0.4, 1.6, -2.2}, 1.2, 1},
+static const ball balls[] = {{{-3, 1, -1}, 0.5, 0},    {{-1.5, 1, -1}, 0.5, 1},
+                             {{1.5, 1, -1}, 0.5, 0},   {{3, 1, -1}, 0.5, 1},
+                             {{0.4, 1, -1}, 0.4, 0},   {{0.4, 1.6, -2.2}, 1.2, 1},
                              {{-0.4, 1, -1}, 0.35, 1}, {{-0.4, 1.6, -2.2}, 1.1, 0}};
 
 /* 0, 1: the colour of the nearest ball on a ray; 2: none; -1: near an edge. */
@@ -533,7 +544,9 @@ static void polygons_and_sdf_mirror_each_other_and_the_nearest_wins(void **unuse
     (void)unused;
     static uint16_t hdr[4 * PIXELS];
     static const double eye[3] = {0, 3, 5};
-    const masu_camera camera = {.position = {0, 3, 5}, .forward = {0, -0.75f, -0.75f}, .fov_y = 0.9f,
+    const masu_camera camera = {.position = {0, 3, 5},
+                                .forward = {0, -0.75f, -0.75f},
+                                .fov_y = 0.9f,
                                 .near_distance = 0.05f};
     masu_stats_info stats;
     picture_of(scene_path("test_reflections"), &camera, shown[0], hdr, &stats);

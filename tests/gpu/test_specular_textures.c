@@ -105,7 +105,8 @@ static double compare_source(const char *what, double tile, uint32_t level, cons
     for (uint32_t i = 0; i < PIXELS; i++) {
         double u = tile * (0.5 + 0.9 * ((i % SIDE + 0.5) / SIDE - 0.5));
         double v = tile * (0.5 - 0.9 * ((i / SIDE + 0.5) / SIDE - 0.5));
-        double want[3] = {gradient(u, level, wrap[0]), gradient(v, level, wrap[1]), masu_ref_srgb_decode(128 / 255.0)};
+        double want[3] = {gradient(u, level, wrap[0]), gradient(v, level, wrap[1]),
+                          masu_ref_srgb_decode(128 / 255.0)};
         for (uint32_t k = 0; k < 3; k++) {
             double error = fabs(want[k] - (double)mirrored[i][k]);
             if (!(error <= worst)) worst = error;
@@ -327,7 +328,8 @@ static void a_mirror_looked_at_for_long_shows_the_same_to_the_bit(void **state) 
     }
     close_session(&s);
     for (uint32_t i = 4; i < 4 * PIXELS; i++) varied += first[i] != first[i - 4];
-    print_message("%u values changed in 39 frames; %u differ from their neighbours'\n", changed, varied);
+    print_message("%u values changed in 39 frames; %u differ from their neighbours'\n", changed,
+                  varied);
     assert_int_equal(changed, 0);
     assert_true(varied > PIXELS / 4);
 }

@@ -34,7 +34,8 @@ static uint32_t frames_of(uint32_t frames) {
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-#define METAL(r) "\"material\": {\"base_color\": [0.9, 0.7, 0.5], \"roughness\": " #r ", \"metallic\": 1}"
+#define METAL(r)                                                                                   \
+    "\"material\": {\"base_color\": [0.9, 0.7, 0.5], \"roughness\": " #r ", \"metallic\": 1}"
 #define VIEW                                                                                       \
     "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 1.7, 4.4], "        \
     "\"target\": [0, 0.45, 0]}]}, \"reflections\": {\"cutoff\": 0.6}"
@@ -45,33 +46,49 @@ static uint32_t frames_of(uint32_t frames) {
  * practical number of rays would converge. */
 static const char round_ones[] =
     "{\"models\": ["
-    "{\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, " METAL(0.2) "}, "
-    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [-1.15, 0.5, 0], " METAL(0.05) "}, "
-    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [0, 0.5, 0], \"material\": "
-    "{\"base_color\": [0.5, 0.8, 0.9], \"roughness\": 0.2, \"metallic\": 1}}, "
-    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [1.15, 0.5, 0], " METAL(0.4) "}, "
-    "{\"mesh\": {\"sphere\": {\"radius\": 0.35, \"subdivisions\": 4}}, \"translate\": [-0.6, 0.35, 1.2], \"material\": "
-    "{\"base_color\": [0.05, 0.1, 0.05], \"roughness\": 0.1}}, "
-    "{\"mesh\": {\"box\": {\"size\": [0.6, 0.5, 0.3]}}, \"translate\": [0.7, 0.25, 1.2], \"rotate\": [0, 25, 0], \"material\": "
-    "{\"base_color\": [0.3, 0.02, 0.02], \"roughness\": 0.3}}, "
-    "{\"mesh\": {\"box\": {\"size\": [0.5, 1.4, 0.3]}}, \"translate\": [-0.6, 0.7, -1.3], \"material\": "
-    "{\"base_color\": [0.1, 0.2, 0.7], \"roughness\": 1}}, "
-    "{\"mesh\": {\"box\": {\"size\": [0.5, 1.2, 0.3]}}, \"translate\": [0.7, 0.9, -1.5], \"material\": "
-    "{\"base_color\": [0, 0, 0], \"emissive\": [3, 2, 1]}, \"area_light\": false}], "
-    "\"sun\": {\"intensity\": 0}, \"ambient\": [0.3, 0.33, 0.4], " SKY VIEW "}";
+    "{\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, " METAL(
+        0.2) "}, "
+             "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": "
+             "[-1.15, 0.5, 0], " METAL(
+                 0.05) "}, "
+                       "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, "
+                       "\"translate\": [0, 0.5, 0], \"material\": "
+                       "{\"base_color\": [0.5, 0.8, 0.9], \"roughness\": 0.2, \"metallic\": 1}}, "
+                       "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, "
+                       "\"translate\": [1.15, 0.5, 0], " METAL(
+                           0.4) "}, "
+                                "{\"mesh\": {\"sphere\": {\"radius\": 0.35, \"subdivisions\": 4}}, "
+                                "\"translate\": [-0.6, 0.35, 1.2], \"material\": "
+                                "{\"base_color\": [0.05, 0.1, 0.05], \"roughness\": 0.1}}, "
+                                "{\"mesh\": {\"box\": {\"size\": [0.6, 0.5, 0.3]}}, \"translate\": "
+                                "[0.7, 0.25, 1.2], \"rotate\": [0, 25, 0], \"material\": "
+                                "{\"base_color\": [0.3, 0.02, 0.02], \"roughness\": 0.3}}, "
+                                "{\"mesh\": {\"box\": {\"size\": [0.5, 1.4, 0.3]}}, \"translate\": "
+                                "[-0.6, 0.7, -1.3], \"material\": "
+                                "{\"base_color\": [0.1, 0.2, 0.7], \"roughness\": 1}}, "
+                                "{\"mesh\": {\"box\": {\"size\": [0.5, 1.2, 0.3]}}, \"translate\": "
+                                "[0.7, 0.9, -1.5], \"material\": "
+                                "{\"base_color\": [0, 0, 0], \"emissive\": [3, 2, 1]}, "
+                                "\"area_light\": false}], "
+                                "\"sun\": {\"intensity\": 0}, \"ambient\": [0.3, 0.33, 0.4], " SKY
+                                    VIEW "}";
 
 /* Sunlit objects, all matt, reflected in glossy ones that do not reflect each other. */
 static const char sunny[] =
     "{\"models\": ["
     "{\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, \"material\": "
     "{\"base_color\": [0.02, 0.02, 0.02], \"roughness\": 0.1}}, "
-    "{\"mesh\": {\"box\": {\"size\": [0.6, 1, 0.6]}}, \"translate\": [-1.1, 0.5, 0], \"rotate\": [0, 30, 0], \"material\": "
+    "{\"mesh\": {\"box\": {\"size\": [0.6, 1, 0.6]}}, \"translate\": [-1.1, 0.5, 0], \"rotate\": "
+    "[0, 30, 0], \"material\": "
     "{\"base_color\": [0.8, 0.3, 0.1], \"roughness\": 1}}, "
-    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [0.1, 0.6, 0], \"scale\": 1.2, \"material\": "
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [0.1, 0.6, "
+    "0], \"scale\": 1.2, \"material\": "
     "{\"base_color\": [0.7, 0.7, 0.7], \"roughness\": 0.9}}, "
-    "{\"mesh\": {\"plane\": {\"size_x\": 1.4, \"size_z\": 1.2}}, \"translate\": [1.3, 0.7, 0.2], \"rotate\": [62, -35, 0], \"material\": "
+    "{\"mesh\": {\"plane\": {\"size_x\": 1.4, \"size_z\": 1.2}}, \"translate\": [1.3, 0.7, 0.2], "
+    "\"rotate\": [62, -35, 0], \"material\": "
     "{\"base_color\": [0.9, 0.9, 0.9], \"roughness\": 0.4, \"metallic\": 0.6}}], "
-    "\"sun\": {\"azimuth\": 40, \"elevation\": 40, \"intensity\": 2}, \"ambient\": [0.3, 0.33, 0.4], " SKY VIEW "}";
+    "\"sun\": {\"azimuth\": 40, \"elevation\": 40, \"intensity\": 2}, \"ambient\": [0.3, 0.33, "
+    "0.4], " SKY VIEW "}";
 
 static void open_scene(const char *name, uint32_t width, uint32_t height, const masu_rung *rung,
                        uint32_t reference) {
@@ -118,8 +135,8 @@ static group *group_of(uint32_t key) {
 
 /* Compares the last frame with rays; `off` scales the roughness, which must be detected unless it
  * is 1. */
-static void compare(const char *name, const masu_ref_mirror *m, const double coat[2], uint32_t frames,
-                    uint32_t rays, double off) {
+static void compare(const char *name, const masu_ref_mirror *m, const double coat[2],
+                    uint32_t frames, uint32_t rays, double off) {
     const float *depth = read_image(&s, slot, MASU_READBACK_DEPTH);
     const uint8_t *albedo = read_image(&s, slot, MASU_READBACK_ALBEDO);
     const uint32_t *normal = read_image(&s, slot, MASU_READBACK_NORMAL);
@@ -165,10 +182,11 @@ static void compare(const char *name, const masu_ref_mirror *m, const double coa
     for (uint32_t i = 0; i < MATERIALS && groups[i].pixels; i++) {
         const group *g = &groups[i];
         double n = g->pixels, d = (g->gpu - g->cpu) / n, se = sqrt(g->error2) / n;
-        print_message("  %s, roughness %.3f, %3u pixels: %.5f against %.5f (%+.2f %%, %+.1f standard errors);"
-                      " of a pixel %.2f, at most %.1f\n",
-                      name, (g->key >> 24) / 255.0, g->pixels, g->gpu / n, g->cpu / n,
-                      100 * d / (g->cpu / n), d / se, sqrt(g->square / g->values), g->worst);
+        print_message(
+            "  %s, roughness %.3f, %3u pixels: %.5f against %.5f (%+.2f %%, %+.1f standard errors);"
+            " of a pixel %.2f, at most %.1f\n",
+            name, (g->key >> 24) / 255.0, g->pixels, g->gpu / n, g->cpu / n, 100 * d / (g->cpu / n),
+            d / se, sqrt(g->square / g->values), g->worst);
     }
 }
 
@@ -318,8 +336,8 @@ static void furnace_with(const char *how, uint32_t reference, uint32_t frames, d
     assert_int_equal(stats_of(&s, slot).replaced, 0);
     close_session(&s);
     for (int b = 0; b < 15; b++) {
-        print_message("  furnace, %s, ball %2d: %u pixels, mean %.4f, %.4f to %.4f\n", how, b, pixels[b],
-                      sum[b] / pixels[b], low[b], high[b]);
+        print_message("  furnace, %s, ball %2d: %u pixels, mean %.4f, %.4f to %.4f\n", how, b,
+                      pixels[b], sum[b] / pixels[b], low[b], high[b]);
         assert_true(pixels[b] > 80);
         worst = worst_of(worst, fabs(sum[b] / pixels[b] - 1));
         worst_pixel = worst_of(worst_pixel, fmax(1 - low[b], high[b] - 1));
@@ -343,17 +361,20 @@ static void all_light_comes_back_in_the_white_furnace(void **state) {
  * rays begin below them. */
 static const char street[] =
     "{\"models\": ["
-    "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 18}}, \"translate\": [0, 0, -5], \"material\": "
+    "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 18}}, \"translate\": [0, 0, -5], "
+    "\"material\": "
     "{\"base_color\": [0.02, 0.02, 0.02], \"roughness\": 0.35}}, "
     "{\"mesh\": {\"box\": {\"size\": [60, 4, 0.5]}}, \"translate\": [0, 2, -14], \"material\": "
     "{\"base_color\": [0, 0, 0], \"emissive\": [2, 0.4, 0.1]}, \"area_light\": false}], "
     "\"sun\": {\"intensity\": 0}, \"ambient\": [0, 0, 0], "
     "\"sky\": {\"zenith\": [0.1, 0.3, 1], \"horizon\": [0.1, 0.3, 1]}, "
-    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 1, 6], \"target\": [0, 0.4, -4]}]}, "
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 1, 6], \"target\": "
+    "[0, 0.4, -4]}]}, "
     "\"reflections\": {\"cutoff\": 0.6}}";
 
 /* The mean of each colour in the lower two fifths of the image, which is all street. */
-static void colors_of_street(const masu_rung *rung, uint32_t reference, uint32_t frames, double mean[3]) {
+static void colors_of_street(const masu_rung *rung, uint32_t reference, uint32_t frames,
+                             double mean[3]) {
     open_scene("street", W, H, rung, reference);
     draw_frames(frames, NULL);
     const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
@@ -387,13 +408,15 @@ static void means_have_the_colors_of_the_reference(void **state) {
 
 /* From the front: a matt wall, and before it two plates, each covering a quarter of the wall. */
 static const char plates[] =
-    "{\"models\": [{\"mesh\": {\"box\": {\"size\": [40, 40, 0.1]}}, \"translate\": [0, 0, -1], \"material\": "
+    "{\"models\": [{\"mesh\": {\"box\": {\"size\": [40, 40, 0.1]}}, \"translate\": [0, 0, -1], "
+    "\"material\": "
     "{\"base_color\": [0.4, 0.4, 0.4], \"roughness\": 0.9}}, "
     "{\"mesh\": {\"box\": {\"size\": [10, 10, 0.1]}}, \"translate\": [-5, 5, 0], \"material\": "
     "{\"base_color\": [0.4, 0.4, 0.4], \"roughness\": 0.1}}, "
     "{\"mesh\": {\"box\": {\"size\": [10, 10, 0.1]}}, \"translate\": [5, -5, 0], \"material\": "
     "{\"base_color\": [0.4, 0.4, 0.4], \"roughness\": 0.3}}], "
-    "\"camera\": {\"fov_y\": 60, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 5], \"target\": [0, 0, 0]}]}, "
+    "\"camera\": {\"fov_y\": 60, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 5], \"target\": "
+    "[0, 0, 0]}]}, "
     "\"reflections\": {\"cutoff\": 0.5}}";
 
 static void only_tiles_that_mirror_are_traced(void **state) {
@@ -426,8 +449,10 @@ static void only_tiles_that_mirror_are_traced(void **state) {
 /* ---- Invalid materials and light ------------------------------------------------------------- */
 
 static const char bright[] =
-    "{\"models\": [" BALLS ", {\"mesh\": {\"box\": {\"size\": [8, 0.2, 8]}}, \"translate\": [0, 3, 0], "
-    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [65504, 65504, 1]}, \"area_light\": false}], "
+    "{\"models\": [" BALLS
+    ", {\"mesh\": {\"box\": {\"size\": [8, 0.2, 8]}}, \"translate\": [0, 3, 0], "
+    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [65504, 65504, 1]}, \"area_light\": "
+    "false}], "
     "\"sun\": {\"intensity\": 1000}, \"ambient\": [1, 1, 1], " BALLS_SEEN ", "
     "\"reflections\": {\"cutoff\": 1}}";
 
@@ -470,7 +495,8 @@ static const masu_memory_row *row_of(const char *name) {
  * raster and of the rays. */
 static void materials_of_nan_give_finite_pixels(void **state) {
     (void)state;
-    static const uint32_t bits[] = {0x7FC00000u, 0x7F800000u, 0xFF800000u, 0x00000001u, 0xC2C80000u};
+    static const uint32_t bits[] = {0x7FC00000u, 0x7F800000u, 0xFF800000u, 0x00000001u,
+                                    0xC2C80000u};
     char error[ERROR_SIZE];
     bake_scene("bright", bright);
     for (uint32_t reference = 0; reference < 2; reference++) {
@@ -493,12 +519,15 @@ static void materials_of_nan_give_finite_pixels(void **state) {
         VkDeviceMemory memory;
         void *mapped = NULL;
         assert_int_equal(vkAllocateMemory(s.host.device, &info, NULL, &memory), VK_SUCCESS);
-        assert_int_equal(vkMapMemory(s.host.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
+        assert_int_equal(vkMapMemory(s.host.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped),
+                         VK_SUCCESS);
         s.desc.device_blocks[MASU_ROLE_DEVICE] =
             (masu_device_block){memory, 0, need->bytes, mapped, need->type};
         assert_ok(masu_session_start(&s, error, sizeof error));
-        uint32_t *raster = (uint32_t *)(void *)((unsigned char *)mapped + row_of("materials")->offset);
-        uint32_t *traced = (uint32_t *)(void *)((unsigned char *)mapped + row_of("traced scene")->offset);
+        uint32_t *raster =
+            (uint32_t *)(void *)((unsigned char *)mapped + row_of("materials")->offset);
+        uint32_t *traced =
+            (uint32_t *)(void *)((unsigned char *)mapped + row_of("traced scene")->offset);
         traced += 4 * (size_t)traced[4 * traced[3]]; /* shaders/trace/scene.glsl */
         uint32_t materials = masu_scene_count(&s.scene, MASU_SCENE_MATERIAL), given;
         memcpy(&given, &raster[3], sizeof given);

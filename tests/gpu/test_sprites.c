@@ -27,7 +27,8 @@ static const masu_camera camera = {
 
 static masu_session_desc room_desc(const char *scene) {
     masu_session_desc d = test_desc(scene, SIDE, SIDE);
-    d.desc.readback = MASU_READBACK_HDR | MASU_READBACK_DEPTH | MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL;
+    d.desc.readback =
+        MASU_READBACK_HDR | MASU_READBACK_DEPTH | MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL;
     d.desc.rung_count = 1;
     d.desc.reserve = (masu_reserve){.particles = ROOM, .decals = ROOM, .lines = ROOM};
     return d;
@@ -54,7 +55,8 @@ static masu_stats_info render(masu_frame_desc frame, float *hdr) {
 }
 
 static masu_frame_desc with_particles(const masu_particle *p, uint32_t count) {
-    return (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .particles = p, .particle_count = count};
+    return (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .particles = p,
+                             .particle_count = count};
 }
 
 /* ---- Particles ------------------------------------------------------------------------------- */
@@ -63,10 +65,13 @@ static masu_frame_desc with_particles(const masu_particle *p, uint32_t count) {
  * at its rim. */
 static double cover_of(const masu_particle *p, uint32_t pixel, double z) {
     double tan_y = tan((double)camera.fov_y / 2), depth = camera.position[2] - p->position[2];
-    double x = ((pixel % SIDE + 0.5) / SIDE * 2 - 1) * tan_y * depth + camera.position[0] - p->position[0];
-    double y = (1 - (pixel / SIDE + 0.5) / SIDE * 2) * tan_y * depth + camera.position[1] - p->position[1];
+    double x =
+        ((pixel % SIDE + 0.5) / SIDE * 2 - 1) * tan_y * depth + camera.position[0] - p->position[0];
+    double y =
+        (1 - (pixel / SIDE + 0.5) / SIDE * 2) * tan_y * depth + camera.position[1] - p->position[1];
     double c = cos((double)p->rotation), n = sin((double)p->rotation), room = 1;
-    double u = (c * x + n * y) / (double)p->half_width, v = (c * y - n * x) / (double)p->half_height;
+    double u = (c * x + n * y) / (double)p->half_width,
+           v = (c * y - n * x) / (double)p->half_height;
     double rest = 1 - sqrt(u * u + v * v);
     if (z > 0 && z < depth) return 0;
     if (fabs(rest) < 0.02 || (z > 0 && fabs(z - depth) < 0.01)) return -1;
@@ -127,7 +132,8 @@ static void a_particle_is_blended_in_linear_light(void **state) {
         if (form == 1) p.flags = MASU_PARTICLE_ADDITIVE;
         if (form == 2) p.edge = 0;
         if (form == 3) p.edge = 0.5f, p.soft = 3;
-        if (form == 4) p.position[2] = 0, p.half_width = p.half_height = 2, p.soft = 1; /* cuts both balls */
+        if (form == 4)
+            p.position[2] = 0, p.half_width = p.half_height = 2, p.soft = 1; /* cuts both balls */
         if (form == 5) p.position[2] = 5.4, p.soft = 1; /* fades out in front of the camera */
         masu_stats_info stats = render(with_particles(&p, 1), picture);
         assert_int_equal(stats.particles, 1);
@@ -185,14 +191,16 @@ static void particles_and_transparents_are_sorted_as_one(void **state) {
         for (uint32_t k = 0; k < 3; k++) p[i].color[k] = (i + k) % 3 ? 0.25f : 2;
     }
     static const double planes[] = {-4, -2.2, -0.6, 1, 3};
-    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) hides_and_is_hidden(p, 4, planes[i]);
+    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++)
+        hides_and_is_hidden(p, 4, planes[i]);
     close_session(&s);
 }
 
 /* One particle in the sun and one in the shadow of the tower, under a given light. */
 static void a_lit_particle_has_sun_shadow_and_ambient_light(void **state) {
     (void)state;
-    const masu_light light = {.sun_direction = {1, 1, 0}, .sun_color = {4, 2, 1}, .ambient = {0.25f, 0.5f, 0.125f}};
+    const masu_light light = {
+        .sun_direction = {1, 1, 0}, .sun_color = {4, 2, 1}, .ambient = {0.25f, 0.5f, 0.125f}};
     const masu_camera above = {.position = {-7, 6, -2}, .forward = {0, -0.3f, -1}, .fov_y = 1.2f};
     open_room("test_shadows");
     for (int shaded = 0; shaded < 2; shaded++) {
@@ -202,16 +210,18 @@ static void a_lit_particle_has_sun_shadow_and_ambient_light(void **state) {
                            .opacity = 1,
                            .edge = 1,
                            .flags = MASU_PARTICLE_LIT};
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &above, .light = &light, .particles = &p, .particle_count = 1};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &above, .light = &light,
+                                 .particles = &p, .particle_count = 1};
         render(frame, picture);
         /* Its centre, by the same camera. */
         double len = sqrt(1.09), f[3] = {0, -0.3 / len, -1 / len}, up[3] = {0, 1 / len, -0.3 / len};
         double d[3] = {p.position[0] + 7, p.position[1] - 6, p.position[2] + 2};
         double z = d[1] * f[1] + d[2] * f[2], y = d[1] * up[1] + d[2] * up[2], t = tan(0.6);
-        uint32_t px = (uint32_t)((d[0] / (z * t) + 1) * 0.5 * SIDE), py = (uint32_t)((1 - y / (z * t)) * 0.5 * SIDE);
+        uint32_t px = (uint32_t)((d[0] / (z * t) + 1) * 0.5 * SIDE),
+                 py = (uint32_t)((1 - y / (z * t)) * 0.5 * SIDE);
         for (uint32_t k = 0; k < 3; k++) {
-            double want = (double)p.color[k] *
-                          ((shaded ? 0 : 0.25) * (double)light.sun_color[k] + (double)light.ambient[k]);
+            double want = (double)p.color[k] * ((shaded ? 0 : 0.25) * (double)light.sun_color[k] +
+                                                (double)light.ambient[k]);
             double is = (double)picture[4 * (py * SIDE + px) + k];
             if (fabs(is - want) > 2e-3 * fmax(1, want))
                 fail_msg("%s, channel %u: %g, not %g", shaded ? "shadow" : "sun", k, is, want);
@@ -231,8 +241,11 @@ static void fog_lies_over_particles(void **state) {
     light.fog_falloff = 0;
     light.fog_start = 2;
     light.fog_color[0] = 0.5f, light.fog_color[1] = 0.25f, light.fog_color[2] = 1;
-    masu_particle p = {.position = {0, 5, -12}, .half_width = 2, .color = {3, 0, 1}, .opacity = 1, .edge = 1};
-    render((masu_frame_desc){MASU_FRAME_DESC, .camera = &level, .light = &light, .particles = &p, .particle_count = 1}, picture);
+    masu_particle p = {
+        .position = {0, 5, -12}, .half_width = 2, .color = {3, 0, 1}, .opacity = 1, .edge = 1};
+    render((masu_frame_desc){MASU_FRAME_DESC, .camera = &level, .light = &light, .particles = &p,
+                             .particle_count = 1},
+           picture);
     double left = exp(-0.05 * 10);
     for (uint32_t k = 0; k < 3; k++) {
         double want = (double)p.color[k] * left + (double)light.fog_color[k] * (1 - left);
@@ -260,12 +273,14 @@ static void read_buffers(const masu_frame_desc *frame, buffers *out, masu_stats_
 /* Coverage at a point by a decal with axis-aligned bounds; below 0: at a limit. */
 static double painted(const masu_decal *d, const double at[3], const float n[3]) {
     double p[3], slack = 0.01;
-    for (uint32_t k = 0; k < 3; k++) p[k] = (at[k] - (double)d->rows[4 * k + 3]) / (double)d->rows[5 * k];
+    for (uint32_t k = 0; k < 3; k++)
+        p[k] = (at[k] - (double)d->rows[4 * k + 3]) / (double)d->rows[5 * k];
     double far = d->flags & MASU_DECAL_ROUND ? hypot(p[0], p[1]) : fmax(fabs(p[0]), fabs(p[1]));
     if (fabs(far - 1) < slack || fabs(fabs(p[2]) - 1) < slack) return -1;
     if (far > 1 || fabs(p[2]) > 1) return 0;
     double edge = d->edge > 0 ? fmin(1, (1 - far) / (double)d->edge) : 1;
-    double inner = d->outer > 0 ? (double)d->inner : 1.05, outer = d->outer > 0 ? (double)d->outer : 1.4;
+    double inner = d->outer > 0 ? (double)d->inner : 1.05,
+           outer = d->outer > 0 ? (double)d->outer : 1.4;
     double facing = ((double)n[2] - cos(outer)) / fmax(cos(inner) - cos(outer), 1e-4);
     return edge * fmax(0, fmin(1, facing));
 }
@@ -287,7 +302,8 @@ static void cover(const masu_decal *d, double share, double surface[5]) {
 static void compare_decals(const masu_decal *decals, uint32_t count, uint32_t touched[2]) {
     static buffers before, after;
     const masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera};
-    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .decals = decals, .decal_count = count};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .decals = decals,
+                             .decal_count = count};
     masu_stats_info stats;
     read_base(&none);
     read_buffers(&none, &before, NULL);
@@ -316,7 +332,8 @@ static void compare_decals(const masu_decal *decals, uint32_t count, uint32_t to
             if (d->roughness > 0) want[3] += ((double)d->roughness - want[3]) * a;
         }
         if (limit) continue;
-        int same = !memcmp(&before.albedo[4 * i], &after.albedo[4 * i], 4) && before.normal[i] == after.normal[i];
+        int same = !memcmp(&before.albedo[4 * i], &after.albedo[4 * i], 4) &&
+                   before.normal[i] == after.normal[i];
         if (share == 0 && !same) fail_msg("pixel %u is outside, and changed", i);
         if (share == 0) continue;
         touched[i % SIDE >= SIDE / 2] += share > 0.1;
@@ -327,7 +344,8 @@ static void compare_decals(const masu_decal *decals, uint32_t count, uint32_t to
             want[c] = fmax(0, fmin(1, want[c] + 0.04 * (metal - want[4])));
         for (uint32_t c = 0; c < 4; c++) {
             double is = after.albedo[4 * i + c] / 255.0, ought = c < 3 ? sqrt(want[c]) : want[c];
-            if (fabs(is - ought) > 2.6 / 255) fail_msg("pixel %u, channel %u: %g, not %g", i, c, is, ought);
+            if (fabs(is - ought) > 2.6 / 255)
+                fail_msg("pixel %u, channel %u: %g, not %g", i, c, is, ought);
         }
     }
 }
@@ -351,7 +369,8 @@ static void a_decal_paints_polygons_and_the_sdf_alike(void **state) {
         if (form == 7) d.metallic = -1, d.opacity = 0.5f;
         uint32_t touched[2];
         compare_decals(&d, 1, touched);
-        print_message("form %u: %u pixels of the SDF, %u of polygons\n", form, touched[0], touched[1]);
+        print_message("form %u: %u pixels of the SDF, %u of polygons\n", form, touched[0],
+                      touched[1]);
         assert_true(touched[0] > 100 && touched[1] > 100);
     }
     /* Small ones, whose last pixels are the first of a workgroup at some positions. */
@@ -396,9 +415,11 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
     (void)state;
     bake_scene(
         "metal_floor",
-        "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"rotate\": [90, 0, 0], "
+        "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"rotate\": [90, "
+        "0, 0], "
         "\"material\": {\"base_color\": [0.7, 0.7, 0.7], \"roughness\": 0.6, \"metallic\": 0.8}}], "
-        "\"sun\": {\"azimuth\": 30, \"elevation\": 50, \"intensity\": 2}, \"ambient\": [0.3, 0.35, 0.45]}");
+        "\"sun\": {\"azimuth\": 30, \"elevation\": 50, \"intensity\": 2}, \"ambient\": [0.3, 0.35, "
+        "0.45]}");
     masu_session_desc d = room_desc(NULL);
     d.scene_path = baked_scene("metal_floor");
     open_session(&s, &d);
@@ -415,7 +436,9 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
                            .outer = 3.2f,
                            .inner = 3.1f};
         if (form / 2) soft.metallic = -1;
-        render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .decals = &soft, .decal_count = 1}, picture);
+        render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .decals = &soft,
+                                 .decal_count = 1},
+               picture);
         double least = 1, ring = 0;
         for (uint32_t x = 4; x < SIDE / 2; x++) {
             uint32_t at = 4 * (SIDE * (SIDE / 2) + x) + 1;
@@ -435,8 +458,13 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
  * material. */
 static void what_is_painted_is_lit(void **state) {
     (void)state;
-    const masu_light dark = {.sun_direction = {0, 0, 1}, .ambient = {0, 0, 0}, .sun_color = {1, 1, 1}};
-    const masu_decal black = {.rows = {9, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0}, .opacity = 1, .roughness = 1, .outer = 3.2f, .inner = 3.1f};
+    const masu_light dark = {
+        .sun_direction = {0, 0, 1}, .ambient = {0, 0, 0}, .sun_color = {1, 1, 1}};
+    const masu_decal black = {.rows = {9, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0},
+                              .opacity = 1,
+                              .roughness = 1,
+                              .outer = 3.2f,
+                              .inner = 3.1f};
     masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &dark};
     double sum[2] = {0};
     open_room("test_pane");
@@ -454,18 +482,25 @@ static void what_is_painted_is_lit(void **state) {
 static void what_is_painted_shines_no_more(void **state) {
     (void)state;
     const masu_light dark = {.sun_direction = {0, 0, 1}};
-    bake_scene("shining", "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, \"rotate\": [90, 0, 0], "
-                          "\"material\": {\"base_color\": [0, 0, 0], \"roughness\": 0.5, \"specular\": 0, \"emissive\": [2, 1, 0.5]}}]}");
+    bake_scene("shining", "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, "
+                          "\"rotate\": [90, 0, 0], "
+                          "\"material\": {\"base_color\": [0, 0, 0], \"roughness\": 0.5, "
+                          "\"specular\": 0, \"emissive\": [2, 1, 0.5]}}]}");
     masu_session_desc d = room_desc(NULL);
     d.scene_path = baked_scene("shining");
     open_session(&s, &d);
     for (int half = 0; half < 3; half++) {
-        const masu_decal black = {.rows = {1, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0}, .opacity = half ? 0.5f * (float)half : 0.0f, .roughness = 1,
-                                  .outer = 3.2f, .inner = 3.1f};
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &dark, .decals = &black, .decal_count = 1};
+        const masu_decal black = {.rows = {1, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0},
+                                  .opacity = half ? 0.5f * (float)half : 0.0f,
+                                  .roughness = 1,
+                                  .outer = 3.2f,
+                                  .inner = 3.1f};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &dark,
+                                 .decals = &black, .decal_count = 1};
         render(frame, picture);
         for (uint32_t k = 0; k < 3; k++) {
-            double middle = (double)picture[4 * (SIDE / 2 * SIDE + SIDE / 2) + k], edge = (double)picture[4 * (SIDE / 2 * SIDE + 2) + k];
+            double middle = (double)picture[4 * (SIDE / 2 * SIDE + SIDE / 2) + k],
+                   edge = (double)picture[4 * (SIDE / 2 * SIDE + 2) + k];
             double shines = 2.0 / (1u << k);
             assert_true(fabs(edge - shines) < 0.001 * shines); /* next to it */
             if (fabs(middle - (1 - 0.5 * half) * shines) > 0.001 * shines)
@@ -485,7 +520,8 @@ static void point_at(double px, double py, double z, double out[3]) {
     out[2] = 6 - z;
 }
 
-static masu_line line_between(double x0, double y0, double z0, double x1, double y1, double z1, uint32_t flags) {
+static masu_line line_between(double x0, double y0, double z0, double x1, double y1, double z1,
+                              uint32_t flags) {
     masu_line l = {.from_color = {255, 0, 128}, .to_color = {255, 0, 128}, .flags = flags};
     point_at(x0, y0, z0, l.from);
     point_at(x1, y1, z1, l.to);
@@ -493,7 +529,8 @@ static masu_line line_between(double x0, double y0, double z0, double x1, double
 }
 
 static void draw_lines(const masu_line *l, uint32_t count, uint32_t rung) {
-    masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera, .rung = rung, .cut = 1}, frame = none;
+    masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera, .rung = rung, .cut = 1},
+                    frame = none;
     masu_commands commands;
     draw(&s, &none, &commands, plain);
     frame.lines = l;
@@ -518,15 +555,19 @@ static void expect_line(uint32_t rung, uint32_t x0, uint32_t y0, uint32_t x1, ui
     int dx = (int)x1 - (int)x0, dy = (int)y1 - (int)y0, n = abs(dx) > abs(dy) ? abs(dx) : abs(dy);
     for (uint32_t i = 0; i < PIXELS; i++) {
         int x = (int)(i % SIDE), y = (int)(i / SIDE), steep = abs(dy) > abs(dx);
-        int k = n == 0 ? 0 : steep ? (y - (int)y0) * (dy < 0 ? -1 : 1) : (x - (int)x0) * (dx < 0 ? -1 : 1);
+        int k = n == 0  ? 0
+                : steep ? (y - (int)y0) * (dy < 0 ? -1 : 1)
+                        : (x - (int)x0) * (dx < 0 ? -1 : 1);
         double off = n == 0 ? abs(x - (int)x0) + abs(y - (int)y0)
                      : steep ? x - (x0 + dx * (double)k / n)
                              : y - (y0 + dy * (double)k / n);
         /* drivers guarantee only 1/16 pixel */
         int on = k >= 0 && k <= n && fabs(off) < 0.42, beside = k < 0 || k > n || fabs(off) > 0.58;
-        if (on && !is_pixel((uint32_t)x, (uint32_t)y, pink)) fail_msg("%d, %d is not of the line", x, y);
+        if (on && !is_pixel((uint32_t)x, (uint32_t)y, pink))
+            fail_msg("%d, %d is not of the line", x, y);
         /* Temporal rungs sample off the pixel's centre, at a different position in each frame. */
-        int changed = rung == 2 ? is_pixel((uint32_t)x, (uint32_t)y, pink) : memcmp(shown + 4 * i, plain + 4 * i, 4) != 0;
+        int changed = rung == 2 ? is_pixel((uint32_t)x, (uint32_t)y, pink)
+                                : memcmp(shown + 4 * i, plain + 4 * i, 4) != 0;
         if (beside && changed) fail_msg("%d, %d is outside the line", x, y);
     }
 }
@@ -567,22 +608,30 @@ static void lines_are_hidden_cut_and_coloured(void **state) {
         }
     }
     /* From behind the camera to far away, through the image's centre: clipped, no artefacts. */
-    masu_line l = {.from = {0.3, 0.2, 20}, .to = {-0.3, -0.2, 2}, .from_color = {255, 0, 128}, .to_color = {255, 0, 128}};
+    masu_line l = {.from = {0.3, 0.2, 20},
+                   .to = {-0.3, -0.2, 2},
+                   .from_color = {255, 0, 128},
+                   .to_color = {255, 0, 128}};
     draw_lines(&l, 1, 0);
     uint32_t n = pixels_of(pink);
     assert_true(n > 3 && n < SIDE);
-    l = (masu_line){.from = {-1e15, 0.01, 3}, .to = {1e15, 0.01, 3}, .from_color = {255, 0, 128}, .to_color = {255, 0, 128}};
+    l = (masu_line){.from = {-1e15, 0.01, 3},
+                    .to = {1e15, 0.01, 3},
+                    .from_color = {255, 0, 128},
+                    .to_color = {255, 0, 128}};
     draw_lines(&l, 1, 0);
     assert_int_equal(pixels_of(pink), SIDE);
     l.from[2] = l.to[2] = 7; /* behind the camera */
     draw_lines(&l, 1, 0);
     assert_memory_equal(shown, plain, sizeof shown);
     /* Each end has its colour; at crossings the later line wins. */
-    masu_line two[2] = {line_between(10, 30, 3, 90, 30, 3, 0), line_between(50, 20, 3, 50, 80, 3, 0)};
+    masu_line two[2] = {line_between(10, 30, 3, 90, 30, 3, 0),
+                        line_between(50, 20, 3, 50, 80, 3, 0)};
     memcpy(two[0].from_color, red, 3);
     memcpy(two[0].to_color, blue, 3);
     draw_lines(two, 2, 0);
-    const uint8_t *a = shown + 4 * (30 * SIDE + 10), *b = shown + 4 * (30 * SIDE + 90), *m = shown + 4 * (30 * SIDE + 49);
+    const uint8_t *a = shown + 4 * (30 * SIDE + 10), *b = shown + 4 * (30 * SIDE + 90),
+                  *m = shown + 4 * (30 * SIDE + 49);
     assert_true(a[0] >= 253 && a[2] <= 2 && b[0] <= 2 && b[2] >= 253 && abs(m[0] - m[2]) < 12);
     assert_true(is_pixel(50, 30, pink));
     close_session(&s);
@@ -605,7 +654,8 @@ static void more_than_was_reserved_is_refused(void **state) {
             if (kind == 0) f.particles = null ? NULL : particles, f.particle_count = count;
             if (kind == 1) f.decals = null ? NULL : decals, f.decal_count = count;
             if (kind == 2) f.lines = null ? NULL : lines, f.line_count = count;
-            assert_int_equal(masu_frame(s.m, &f, &commands, &failure), null ? MASU_ERROR_ARGUMENT : MASU_ERROR_LIMIT);
+            assert_int_equal(masu_frame(s.m, &f, &commands, &failure),
+                             null ? MASU_ERROR_ARGUMENT : MASU_ERROR_LIMIT);
             const masu_detail *e = (&failure);
             assert_string_equal(e->what, null ? names[kind] + 8 : names[kind]);
             assert_int_equal(e->needed, count);
@@ -614,8 +664,9 @@ static void more_than_was_reserved_is_refused(void **state) {
     }
     /* The failed calls have not advanced the frame's number; as many as the capacity are
      * accepted. */
-    masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .particles = particles, .particle_count = ROOM, .decals = decals,
-                         .decal_count = ROOM, .lines = lines, .line_count = ROOM};
+    masu_frame_desc f = {MASU_FRAME_DESC,        .camera = &camera, .particles = particles,
+                         .particle_count = ROOM, .decals = decals,  .decal_count = ROOM,
+                         .lines = lines,         .line_count = ROOM};
     draw(&s, &f, &commands, NULL);
     assert_int_equal(commands.frame, 0);
     close_session(&s);
@@ -625,7 +676,9 @@ static void more_than_was_reserved_is_refused(void **state) {
 static float any_float(uint64_t *seed) {
     uint32_t kind = random_word(seed) % 8;
     static const float odd[] = {0, -1, 1e-30f, 1e9f, 3e38f, -3e38f};
-    return kind == 0 ? float_of_bits(random_word(seed)) : kind == 1 ? odd[random_word(seed) % 6] : random_float(seed) * 4 - 1;
+    return kind == 0   ? float_of_bits(random_word(seed))
+           : kind == 1 ? odd[random_word(seed) % 6]
+                       : random_float(seed) * 4 - 1;
 }
 
 static double any_double(uint64_t *seed) {
@@ -659,11 +712,14 @@ static void any_numbers_give_a_finite_picture(void **state) {
             d[i].opacity = any_float(&seed), d[i].roughness = any_float(&seed);
             d[i].metallic = any_float(&seed), d[i].edge = any_float(&seed);
             d[i].inner = any_float(&seed), d[i].outer = any_float(&seed);
-            p[i].flags = random_word(&seed), d[i].flags = random_word(&seed), l[i].flags = random_word(&seed);
+            p[i].flags = random_word(&seed), d[i].flags = random_word(&seed),
+            l[i].flags = random_word(&seed);
         }
-        masu_stats_info stats = render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .particles = p, .particle_count = ROOM,
-                                                         .decals = d, .decal_count = ROOM, .lines = l, .line_count = ROOM},
-                                       picture);
+        masu_stats_info stats =
+            render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .particles = p,
+                                     .particle_count = ROOM, .decals = d, .decal_count = ROOM,
+                                     .lines = l, .line_count = ROOM},
+                   picture);
         for (uint32_t i = 0; i < 4 * PIXELS; i++) assert_true(isfinite(picture[i]));
         drawn[0] += stats.particles, drawn[1] += stats.decals, drawn[2] += stats.lines;
     }
@@ -682,7 +738,8 @@ static void what_is_no_number_is_left_out(void **state) {
     for (uint32_t b = 0; b < 3; b++) {
         for (uint32_t field = whole_run() ? 0 : b; field < 12; field += whole_run() ? 1 : 3) {
             masu_particle p = disc;
-            float *const fields[] = {&p.half_width, &p.half_height, &p.rotation, &p.color[0], &p.color[1], &p.color[2],
+            float *const fields[] = {&p.half_width, &p.half_height, &p.rotation,
+                                     &p.color[0],   &p.color[1],    &p.color[2],
                                      &p.opacity,    &p.edge,        &p.soft};
             if (field < 9) *fields[field] = bad[b];
             if (field >= 9) p.position[field - 9] = (double)bad[b];
@@ -693,17 +750,22 @@ static void what_is_no_number_is_left_out(void **state) {
         masu_decal d = {.rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, .opacity = 1};
         for (uint32_t field = whole_run() ? 0 : b; field < 21; field += whole_run() ? 1 : 3) {
             masu_decal x = d;
-            float *const fields[] = {&x.color[0], &x.color[1], &x.color[2], &x.opacity, &x.roughness,
-                                     &x.metallic, &x.edge,     &x.inner,    &x.outer};
+            float *const fields[] = {&x.color[0], &x.color[1],  &x.color[2],
+                                     &x.opacity,  &x.roughness, &x.metallic,
+                                     &x.edge,     &x.inner,     &x.outer};
             *(field < 12 ? &x.rows[field] : fields[field - 12]) = bad[b];
-            masu_stats_info stats = render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .decals = &x, .decal_count = 1}, picture);
+            masu_stats_info stats = render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera,
+                                                             .decals = &x, .decal_count = 1},
+                                           picture);
             assert_int_equal(stats.decals, 0);
             assert_memory_equal(shown, plain, sizeof shown);
         }
         for (uint32_t field = 0; field < 6; field++) {
             masu_line x = line_between(10, 10, 3, 80, 80, 3, 0);
             (field < 3 ? x.from : x.to)[field % 3] = (double)bad[b];
-            masu_stats_info stats = render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .lines = &x, .line_count = 1}, picture);
+            masu_stats_info stats = render(
+                (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .lines = &x, .line_count = 1},
+                picture);
             assert_int_equal(stats.lines, 0);
             assert_memory_equal(shown, plain, sizeof shown);
         }
@@ -725,7 +787,8 @@ static void room_alone_changes_nothing(void **state) {
         masu_plan_info plan;
         masu_plan_of(s.m, &plan);
         static const char *const names[] = {"particles", "decals", "lines", "lines_show"};
-        for (uint32_t k = 0; k < 4; k++) assert_int_equal(pass_of(&plan, names[k])->active, (uint32_t)room);
+        for (uint32_t k = 0; k < 4; k++)
+            assert_int_equal(pass_of(&plan, names[k])->active, (uint32_t)room);
         masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera};
         masu_commands commands;
         draw(&s, &frame, &commands, room ? shown : without);
@@ -765,8 +828,9 @@ static void each_frame_has_its_own(void **state) {
     const masu_decal d = {.rows = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0}, .opacity = 1};
     const masu_line l = line_between(10, 10, 3, 80, 80, 3, 0);
     const masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera};
-    const masu_frame_desc all = {MASU_FRAME_DESC, .camera = &camera, .particles = &disc, .particle_count = 1, .decals = &d,
-                                 .decal_count = 1, .lines = &l, .line_count = 1};
+    const masu_frame_desc all = {MASU_FRAME_DESC,     .camera = &camera, .particles = &disc,
+                                 .particle_count = 1, .decals = &d,      .decal_count = 1,
+                                 .lines = &l,         .line_count = 1};
     masu_commands commands;
     masu_session_desc desc = room_desc("test_pane");
     desc.desc.frames_in_flight = 3;
@@ -808,7 +872,8 @@ static void no_trail_stays(void **state) {
     static uint8_t never[WARM + AFTER][4 * PIXELS], covered[PIXELS];
     masu_particle smoke = disc;
     smoke.edge = 0.2f;
-    const masu_decal d = {.rows = {2, 0, 0, 0, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
+    const masu_decal d = {
+        .rows = {2, 0, 0, 0, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
     masu_particle smoke_away = smoke;
     masu_decal d_away = d;
     smoke_away.position[1] = 1000;
@@ -861,10 +926,15 @@ static void run_own(own_renderer *x, masu_frame_desc frame, uint8_t *out) {
 static void viewports_and_sizes_are_right(void **state) {
     (void)state;
     enum { W = 61, H = 43 };
-    const masu_decal d = {.rows = {0.3f, 0, 0, 1.5f, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
-    const masu_line l = {.from = {-2, -1, 1}, .to = {2, 1, 1}, .from_color = {255, 255, 0}, .to_color = {0, 255, 255}};
-    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .cut = 1, .particles = &disc, .particle_count = 1, .decals = &d,
-                             .decal_count = 1, .lines = &l, .line_count = 1};
+    const masu_decal d = {
+        .rows = {0.3f, 0, 0, 1.5f, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
+    const masu_line l = {.from = {-2, -1, 1},
+                         .to = {2, 1, 1},
+                         .from_color = {255, 255, 0},
+                         .to_color = {0, 255, 255}};
+    masu_frame_desc frame = {MASU_FRAME_DESC,    .camera = &camera,   .cut = 1,
+                             .particles = &disc, .particle_count = 1, .decals = &d,
+                             .decal_count = 1,   .lines = &l,         .line_count = 1};
     masu_session_desc session = room_desc("test_pane");
     session.no_renderer = true;
     open_session(&s, &session);
@@ -887,7 +957,8 @@ static void viewports_and_sizes_are_right(void **state) {
     make_own(&s, &whole, &own);
     masu_headless_target_destroy(&s.host, &whole.target);
     make_target(&s, &whole, W, H, 1);
-    masu_targets t = {.images = &whole.target.image, .views = &whole.target.view, .count = 1, .storage = 1};
+    masu_targets t = {
+        .images = &whole.target.image, .views = &whole.target.view, .count = 1, .storage = 1};
     masu_detail detail;
     if (masu_resize(whole.m, (VkExtent2D){W, H}, &t, NULL, &detail)) fail_msg("%s", detail.text);
     run_own(&whole, frame, shown);
@@ -907,7 +978,8 @@ static void viewports_and_sizes_are_right(void **state) {
     for (uint32_t y = 0; y < SIDE; y++) {
         for (uint32_t x = 0; x < SIDE; x++) {
             int in = x >= 20 && x < 20 + W && y >= 30 && y < 30 + H;
-            const uint8_t *want = in ? plain + 4 * ((y - 30) * W + x - 20) : other + 4 * (y * SIDE + x);
+            const uint8_t *want =
+                in ? plain + 4 * ((y - 30) * W + x - 20) : other + 4 * (y * SIDE + x);
             for (uint32_t k = 0; k < 3; k++) {
                 int off = abs(want[k] - shown[4 * (y * SIDE + x) + k]);
                 if (off > 0) fail_msg("%u, %u has an error of %d", x, y, off);
@@ -928,7 +1000,9 @@ static void lines_have_their_colour_in_every_encoding(void **state) {
         masu_session_desc d = room_desc("test_pane");
         d.desc.targets.storage = form == 1;
         if (form == 1 || form == 2) d.desc.targets.format = VK_FORMAT_R16G16B16A16_SFLOAT;
-        if (form == 3) d.desc.targets.format = VK_FORMAT_A2B10G10R10_UNORM_PACK32, d.desc.targets.encoding = MASU_ENCODING_PQ;
+        if (form == 3)
+            d.desc.targets.format = VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+            d.desc.targets.encoding = MASU_ENCODING_PQ;
         d.desc.targets.white = 160; /* in floats 1 is 80 */
         open_session(&s, &d);
         pane_at(100);
@@ -937,18 +1011,22 @@ static void lines_have_their_colour_in_every_encoding(void **state) {
         char error[ERROR_SIZE];
         draw(&s, &frame, &commands, NULL);
         assert_ok(masu_headless_target_read(&s.host, &s.targets[0], error, sizeof error));
-        const uint8_t *at = (const uint8_t *)s.targets[0].mapped + (form == 0 || form == 3 ? 4 : 8) * (20 * SIDE + 40);
+        const uint8_t *at = (const uint8_t *)s.targets[0].mapped +
+                            (form == 0 || form == 3 ? 4 : 8) * (20 * SIDE + 40);
         double got[3], want[3];
         for (uint32_t k = 0; k < 3; k++) {
             uint32_t word;
             uint16_t half;
             memcpy(&word, at, 4);
             memcpy(&half, at + 2 * k, 2);
-            got[k] = form == 0 ? at[k] : form == 3 ? (word >> 10 * k & 1023) / 1023.0 : half_float(half);
+            got[k] = form == 0   ? at[k]
+                     : form == 3 ? (word >> 10 * k & 1023) / 1023.0
+                                 : half_float(half);
             want[k] = form == 0 ? l.from_color[k] : 2 * linear[k];
         }
         if (form == 3) { /* BT.2020, nits, ST 2084 */
-            const double rows[3][3] = {{0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0114}, {0.0164, 0.0880, 0.8956}};
+            const double rows[3][3] = {
+                {0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0114}, {0.0164, 0.0880, 0.8956}};
             for (uint32_t k = 0; k < 3; k++) {
                 double nits = 0;
                 for (uint32_t j = 0; j < 3; j++) nits += rows[k][j] * linear[j] * 160;
@@ -957,7 +1035,8 @@ static void lines_have_their_colour_in_every_encoding(void **state) {
             }
         }
         for (uint32_t k = 0; k < 3; k++) {
-            if (fabs(got[k] - want[k]) > (form ? 0.004 : 0)) fail_msg("form %d, channel %u: %g, not %g", form, k, got[k], want[k]);
+            if (fabs(got[k] - want[k]) > (form ? 0.004 : 0))
+                fail_msg("form %d, channel %u: %g, not %g", form, k, got[k], want[k]);
         }
         close_session(&s);
     }

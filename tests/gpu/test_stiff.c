@@ -322,15 +322,16 @@ static const stiff_case many[] = {
 
 /* In a separate test: Mesa 22.3's lavapipe silently ends every loop of an invocation after 65,535
  * iterations of all its loops together; 4096 parts are 16 samples. */
-static const stiff_case many_at_once = {.name = "4096 parts, all in a tile",
-                                        .scene = "many",
-                                        .camera = LOOK(0, 8, 38, 0, -0.3f, -1, 0.8f, 0.05f),
-                                        .width = 96,
-                                        .height = 64,
-                                        .stride = 4,
-                                        .least_hits = 40,
-                                        .most = {0.33, 0, 2.3e-05, 8.7e-05, 0.0042, 0.39, 1.5, 22, 0},
-                                        .why = "balls of a pixel near the horizon"};
+static const stiff_case many_at_once = {
+    .name = "4096 parts, all in a tile",
+    .scene = "many",
+    .camera = LOOK(0, 8, 38, 0, -0.3f, -1, 0.8f, 0.05f),
+    .width = 96,
+    .height = 64,
+    .stride = 4,
+    .least_hits = 40,
+    .most = {0.33, 0, 2.3e-05, 8.7e-05, 0.0042, 0.39, 1.5, 22, 0},
+    .why = "balls of a pixel near the horizon"};
 
 static const stiff_case coincident = {.name = "two surfaces in one place",
                                       .scene = "coincident",

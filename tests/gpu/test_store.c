@@ -19,14 +19,22 @@ typedef struct stored {
 } stored;
 
 static const float values[][4] = {
-    {0.25f, 0.5f, 0.75f, 1.0f},       {-1.0f, 2.0f, 1e6f, -1e6f},       {NAN, 0.5f, 0.5f, 0.5f},
-    {0.5f, INFINITY, 0.5f, 0.5f},     {0.5f, 0.5f, -INFINITY, 0.5f},    {0.5f, 0.5f, 0.5f, NAN},
-    {INFINITY, INFINITY, NAN, -NAN},  {-INFINITY, NAN, INFINITY, 0.0f}, {-0.0f, 1e-40f, 3.4e38f, -3.4e38f},
+    {0.25f, 0.5f, 0.75f, 1.0f},
+    {-1.0f, 2.0f, 1e6f, -1e6f},
+    {NAN, 0.5f, 0.5f, 0.5f},
+    {0.5f, INFINITY, 0.5f, 0.5f},
+    {0.5f, 0.5f, -INFINITY, 0.5f},
+    {0.5f, 0.5f, 0.5f, NAN},
+    {INFINITY, INFINITY, NAN, -NAN},
+    {-INFINITY, NAN, INFINITY, 0.0f},
+    {-0.0f, 1e-40f, 3.4e38f, -3.4e38f},
     {65504.0f, 65505.0f, 1e5f, 7e4f},
 };
 enum { COUNT = sizeof values / sizeof *values };
 
-static float sane(float x, float low, float high) { return isfinite(x) ? fminf(fmaxf(x, low), high) : 0.0f; }
+static float sane(float x, float low, float high) {
+    return isfinite(x) ? fminf(fmaxf(x, low), high) : 0.0f;
+}
 
 /* A driver may flush denormals to 0. */
 static void assert_stored(float found, float wanted) {
@@ -38,8 +46,10 @@ static void run(stored out[EACH * COUNT]) {
     memset(out, 0, EACH * COUNT * sizeof *out);
     float given[COUNT][4];
     memcpy(given, values, sizeof given);
-    const compute_buffer buffers[] = {{0, given, sizeof given}, {1, out, EACH * COUNT * sizeof *out}};
-    compute_run(masu_spv_store_comp, sizeof masu_spv_store_comp, buffers, 2, (const uint32_t[4]){COUNT}, 1);
+    const compute_buffer buffers[] = {{0, given, sizeof given},
+                                      {1, out, EACH * COUNT * sizeof *out}};
+    compute_run(masu_spv_store_comp, sizeof masu_spv_store_comp, buffers, 2,
+                (const uint32_t[4]){COUNT}, 1);
 }
 
 static void what_is_not_finite_is_stored_as_0(void **state) {

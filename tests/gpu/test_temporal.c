@@ -64,8 +64,9 @@ static struct {
 static void find_truth(const char *scene, const float *ball, const masu_light *light) {
     char error[ERROR_SIZE];
     masu_session s;
-    if (last.scene && !strcmp(scene, last.scene) && last.moved == (ball != NULL) && last.lit == (light != NULL) &&
-        (!ball || !memcmp(ball, last.ball, sizeof last.ball)) && (!light || !memcmp(light, &last.light, sizeof *light)))
+    if (last.scene && !strcmp(scene, last.scene) && last.moved == (ball != NULL) &&
+        last.lit == (light != NULL) && (!ball || !memcmp(ball, last.ball, sizeof last.ball)) &&
+        (!light || !memcmp(light, &last.light, sizeof *light)))
         return;
     last.scene = scene, last.moved = ball != NULL, last.lit = light != NULL;
     if (ball) memcpy(last.ball, ball, sizeof last.ball);
@@ -104,14 +105,16 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     }
     assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
     const masu_role_need *need = &s.need.roles[MASU_ROLE_DEVICE];
-    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = need->bytes,
+    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                 .allocationSize = need->bytes,
                                  .memoryTypeIndex = need->type};
     VkDeviceMemory memory;
     void *mapped;
     assert_int_equal(vkAllocateMemory(s.host.device, &info, NULL, &memory), VK_SUCCESS);
     assert_int_equal(vkMapMemory(s.host.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
     memset(mapped, 0x60, need->bytes); /* 24 samples of a middle grey */
-    s.desc.device_blocks[MASU_ROLE_DEVICE] = (masu_device_block){memory, 0, need->bytes, mapped, need->type};
+    s.desc.device_blocks[MASU_ROLE_DEVICE] =
+        (masu_device_block){memory, 0, need->bytes, mapped, need->type};
     assert_ok(masu_session_start(&s, error, sizeof error));
     f.cut = 0;
     draw(&s, &f, &commands, NULL);
@@ -258,15 +261,18 @@ static void what_leaves_leaves_no_ghost(void **state) {
             frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
             for (int k = 1; k <= 8 && !jumps; k++) {
                 float t = (float)k / 8.0f;
-                move_instance(&s, "ball", 0.8f + t * (away[0] - 0.8f), 0.8f, 0.6f + t * (away[2] - 0.6f), 1.0f);
+                move_instance(&s, "ball", 0.8f + t * (away[0] - 0.8f), 0.8f,
+                              0.6f + t * (away[2] - 0.6f), 1.0f);
                 frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC}, NULL);
             }
             move_instance(&s, "ball", away[0], away[1], away[2], 1.0f);
             frames(&s, 8, (masu_frame_desc){MASU_FRAME_DESC}, a.rgba);
             uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
-            print_message("  scale %.2f, %s: %u of %u pixels are more than 2 of 255 off\n", (double)scales[i],
-                          jumps ? "a jump" : "a path", off, all);
-            assert_true(all > 100 && off <= (i ? all / 100 : 0)); /* at half size a shadow edge is three pixels wide */
+            print_message("  scale %.2f, %s: %u of %u pixels are more than 2 of 255 off\n",
+                          (double)scales[i], jumps ? "a jump" : "a path", off, all);
+            assert_true(
+                all > 100 &&
+                off <= (i ? all / 100 : 0)); /* at half size a shadow edge is three pixels wide */
             close_session(&s);
         }
     }
@@ -282,7 +288,10 @@ static void smoke_leaves_no_trail(void **state) {
         last.scene = NULL;
         d.desc.reserve.particles = 1;
         open_session(&s, &d);
-        masu_particle puff = {.position = {-0.5, 1.2, 2.0}, .half_width = 0.5f, .opacity = 0.7f, .edge = 0.5f,
+        masu_particle puff = {.position = {-0.5, 1.2, 2.0},
+                              .half_width = 0.5f,
+                              .opacity = 0.7f,
+                              .edge = 0.5f,
                               .color = {0.3f, 0.6f, 0.9f}};
         masu_frame_desc f = {MASU_FRAME_DESC, .particles = &puff, .particle_count = 1};
         frames(&s, 60, f, b.rgba);
@@ -293,7 +302,8 @@ static void smoke_leaves_no_trail(void **state) {
         frames(&s, 8, f, a.rgba);
         frames(&s, trials(120, 120, 60), f, truth.rgba);
         uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
-        print_message("  scale %.1f: %u of %u pixels are more than 2 of 255 off\n", half ? 0.5 : 1.0, off, all);
+        print_message("  scale %.1f: %u of %u pixels are more than 2 of 255 off\n",
+                      half ? 0.5 : 1.0, off, all);
         assert_true(all > 100 && off <= (half ? all / 50 : 0));
         close_session(&s);
     }
@@ -311,13 +321,16 @@ static void sky_that_is_uncovered_shows_no_pole(void **state) {
         move_instance(&s, "ball", 0.0f, 1.0f, -3.0f, 0.3f);
         for (int k = 0; k <= 12; k++) {
             camera.position[0] = k * metres;
-            frames(&s, k ? 1 : 60, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, k ? a.rgba : b.rgba);
+            frames(&s, k ? 1 : 60, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera},
+                   k ? a.rgba : b.rgba);
         }
         frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .cut = 1}, NULL);
-        frames(&s, trials(150, 150, 75), (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, truth.rgba);
+        frames(&s, trials(150, 150, 75), (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera},
+               truth.rgba);
         last.scene = NULL;
         uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
-        print_message("  scale %.1f: %u of %u pixels are more than 2 of 255 off\n", half ? 0.5 : 1.0, off, all);
+        print_message("  scale %.1f: %u of %u pixels are more than 2 of 255 off\n",
+                      half ? 0.5 : 1.0, off, all);
         assert_true(all > 1000 && off <= (half ? all / 50 : 2));
         close_session(&s);
     }
@@ -387,12 +400,13 @@ static void light_that_changes_in_motion_is_seen(void **state) {
             find_truth("test_shadows", NULL, rises ? &bright : &dark);
             for (int k = 13; k >= 0; k--) {
                 masu_camera camera = aside(&s, 0.02 * k);
-                masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = (k < 2) == rises ? &bright : &dark};
+                masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera,
+                                     .light = (k < 2) == rises ? &bright : &dark};
                 draw(&s, &f, &commands, k == 2 ? b.rgba : a.rgba);
             }
             uint32_t all, off = ghosts(b.rgba, a.rgba, 6, &all);
-            print_message("  scale %.2f, %s: %u of %u pixels are more than 6 of 255 off\n", (double)scales[i],
-                          rises ? "on" : "out", off, all);
+            print_message("  scale %.2f, %s: %u of %u pixels are more than 6 of 255 off\n",
+                          (double)scales[i], rises ? "on" : "out", off, all);
             assert_true(all > 1000 && off < all / 20);
             close_session(&s);
         }
@@ -412,9 +426,12 @@ static void white_is_white_in_every_frame(void **state) {
         for (uint32_t i = 0; i < 24; i++) {
             masu_commands commands;
             masu_camera camera = aside(&s, i < 12 ? 0.0 : 0.01 * i);
-            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .light = &light, .camera = &camera}, &commands, a.rgba);
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .light = &light, .camera = &camera},
+                 &commands, a.rgba);
             for (uint32_t p = 0; p < BYTES; p++) {
-                if (a.rgba[p] != 255) fail_msg("frame %u, scale %g: byte %u is %u", i, half ? 0.5 : 1.0, p, a.rgba[p]);
+                if (a.rgba[p] != 255)
+                    fail_msg("frame %u, scale %g: byte %u is %u", i, half ? 0.5 : 1.0, p,
+                             a.rgba[p]);
             }
         }
         close_session(&s);
@@ -445,7 +462,8 @@ static void twice_the_size_is_the_same(void **state) {
             masu_camera camera = aside(&s, 0.02 * (i < 12 ? i : 12));
             camera.jitter[0] = i < 24 ? 0.0f : 0.05f * (float)(i - 16); /* up to a whole pixel */
             camera.jitter[1] = -0.7f * camera.jitter[0];
-            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, &commands, pixels[k][i / 12]);
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, &commands,
+                 pixels[k][i / 12]);
         }
         close_session(&s);
     }
@@ -456,8 +474,9 @@ static void twice_the_size_is_the_same(void **state) {
                 others += pixels[k][i][p] != pixels[0][i][p];
                 twos += abs(pixels[k][i][p] - pixels[0][i][p]) > 1;
             }
-            print_message("  scale %.3f, resizable %u, halves %u: %u of %d bytes differ, by %u at most\n",
-                          (double)ways[k].scale, ways[k].resizable, ways[k].halves, others, BYTES, most);
+            print_message(
+                "  scale %.3f, resizable %u, halves %u: %u of %d bytes differ, by %u at most\n",
+                (double)ways[k].scale, ways[k].resizable, ways[k].halves, others, BYTES, most);
             /* Half floats are coarser: up to a tenth of an output step. While the view moves, the
              * history of a thin surface that the samples miss is kept if it differs by more than a
              * threshold, and a texel or two are at the threshold with half floats or another
@@ -487,7 +506,8 @@ static void depth_is_found_in_a_larger_image(void **state) {
         masu_commands commands;
         for (int i = 0; i < 16; i++) {
             masu_camera camera = aside(&s, 0.03 * i);
-            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = (uint32_t)k}, &commands, k ? b.rgba : a.rgba);
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = (uint32_t)k},
+                 &commands, k ? b.rgba : a.rgba);
         }
         close_session(&s);
     }
@@ -514,8 +534,10 @@ static void equal_frames_give_equal_bytes(void **state) {
         for (int i = 0; i < 16; i++) {
             masu_camera camera = aside(&s, 0.1 * i);
             camera.position[1] += 0.1 * (i / 4);
-            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = (uint32_t)("0011230443130141"[i] - '0')}, &commands,
-                 k ? b.rgba : a.rgba);
+            draw(&s,
+                 &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera,
+                                    .rung = (uint32_t)("0011230443130141"[i] - '0')},
+                 &commands, k ? b.rgba : a.rgba);
         }
         close_session(&s);
         if (k) assert_memory_equal(a.rgba, b.rgba, BYTES);
@@ -535,7 +557,8 @@ static void a_cut_forgets_all(void **state) {
         /* earlier changes have no influence, as earlier images do not */
         light.sun_color[0] *= k ? 0.5f : 1.0f;
         move_instance(&s, "ball", k ? 2.0f : 0.8f, 0.8f, 0.6f, 1.0f);
-        frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere, .light = &light}, NULL);
+        frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere, .light = &light},
+               NULL);
         move_instance(&s, "ball", 0.8f, 0.8f, 0.6f, 1.0f);
         frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .cut = 1}, NULL);
         frames(&s, 3, (masu_frame_desc){MASU_FRAME_DESC}, k ? b.rgba : a.rgba);
@@ -555,7 +578,8 @@ static void a_change_of_scale_keeps_the_past(void **state) {
     open_session(&s, &d);
     frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
     frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .rung = 1}, a.rgba);
-    double before = rms(b.rgba, truth.rgba), after = rms(a.rgba, truth.rgba), pop = rms(a.rgba, b.rgba);
+    double before = rms(b.rgba, truth.rgba), after = rms(a.rgba, truth.rgba),
+           pop = rms(a.rgba, b.rgba);
     frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .rung = 1, .cut = 1}, b.rgba);
     double anew = rms(b.rgba, truth.rgba);
     print_message("  rms %.2f of 255 before, %.2f in the frame after, which differs by %.2f; "
@@ -585,7 +609,8 @@ static void nothing_breaks_it(void **state) {
             if (i % 3 == 2) camera.position[1] = -0.5;
             if (i % 8 == 7) camera.forward[0] = 5.0f;
             camera.jitter[0] = i % 2 ? 1.0f : -1.0f;
-            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .rung = i % 5, .time = i % 6 == 5 ? 1e9 : 10.0 * i,
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .rung = i % 5,
+                                 .time = i % 6 == 5 ? 1e9 : 10.0 * i,
                                  .time_step = i % 2 ? 10.0f : 0.0f};
             masu_commands commands;
             draw(&s, &f, &commands, a.rgba);
@@ -633,7 +658,8 @@ static double roughness_of(float scale, double metres, uint8_t *albedo) {
     uint32_t size = (uint32_t)(SIZE * scale);
     const uint8_t *image = read_image(&s, commands.slot, MASU_READBACK_ALBEDO);
     double sum = 0.0;
-    for (uint32_t i = 0; i + 4 < 4 * size * size; i++) sum += i % 4 < 3 ? abs((int)image[i + 4] - image[i]) : 0;
+    for (uint32_t i = 0; i + 4 < 4 * size * size; i++)
+        sum += i % 4 < 3 ? abs((int)image[i + 4] - image[i]) : 0;
     memcpy(albedo, image, 4 * (size_t)size * size);
     close_session(&s);
     return sum;
@@ -666,7 +692,8 @@ static void velocity_in_mirror(masu_switch fine, uint32_t rung, double metres, d
     for (int k = 5; k >= 0; k--) {
         masu_camera camera = aside(&s, k * metres);
         camera.position[1] -= 0.5 * k * metres;
-        draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = rung}, &commands, NULL);
+        draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = rung}, &commands,
+             NULL);
     }
     const uint16_t *image = read_image(&s, commands.slot, MASU_READBACK_VELOCITY);
     for (int k = 0; k < 2; k++) v[k] = half_float(image[4 * (SIZE / 2 * SIZE + SIZE / 2) + k]);

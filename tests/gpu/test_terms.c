@@ -19,7 +19,8 @@ typedef struct picture {
     uint64_t evaluations;
 } picture;
 
-static void march(const char *scene, int all_terms, masu_switch share, float scale, double time, picture *out) {
+static void march(const char *scene, int all_terms, masu_switch share, float scale, double time,
+                  picture *out) {
     masu_session_desc d = test_desc(scene, W, H);
     d.desc.readback = MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL | MASU_READBACK_DEPTH;
     d.desc.rung_count = 1;
@@ -36,15 +37,18 @@ static void march(const char *scene, int all_terms, masu_switch share, float sca
     memset(out, 0, sizeof *out);
     draw(&s, &frame, &commands, out->shown);
     uint32_t w = (uint32_t)(W * scale), h = (uint32_t)(H * scale);
-    memcpy(out->albedo, read_image(&s, commands.slot, MASU_READBACK_ALBEDO), sizeof(uint32_t) * w * h);
-    memcpy(out->normal, read_image(&s, commands.slot, MASU_READBACK_NORMAL), sizeof(uint32_t) * w * h);
+    memcpy(out->albedo, read_image(&s, commands.slot, MASU_READBACK_ALBEDO),
+           sizeof(uint32_t) * w * h);
+    memcpy(out->normal, read_image(&s, commands.slot, MASU_READBACK_NORMAL),
+           sizeof(uint32_t) * w * h);
     memcpy(out->depth, read_image(&s, commands.slot, MASU_READBACK_DEPTH), sizeof(float) * w * h);
     out->evaluations = stats_of(&s, commands.slot).sdf_evals;
     close_session(&s);
 }
 
 static void same(const char *scene, float scale, double time) {
-    picture *all = malloc(sizeof *all), *chosen = malloc(sizeof *chosen), *shared = malloc(sizeof *shared);
+    picture *all = malloc(sizeof *all), *chosen = malloc(sizeof *chosen),
+            *shared = malloc(sizeof *shared);
     assert_true(all && chosen && shared);
     march(scene, 1, MASU_OFF, scale, time, all);
     march(scene, 0, MASU_OFF, scale, time, chosen);

@@ -71,7 +71,8 @@ static void draw_variant(int variant, uint32_t readback) {
             masu_stats_info stats;
             uint32_t to = way != NEITHER;
             draw(&s, &f, &commands, NULL);
-            memcpy(albedo[to], read_image(&s, commands.slot, MASU_READBACK_ALBEDO), sizeof albedo[to]);
+            memcpy(albedo[to], read_image(&s, commands.slot, MASU_READBACK_ALBEDO),
+                   sizeof albedo[to]);
             memcpy(depth[to], read_image(&s, commands.slot, MASU_READBACK_DEPTH), sizeof depth[to]);
             assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
             drawn[way] += stats.triangles;

@@ -71,7 +71,8 @@ static mip mip_of(uint32_t texture, uint32_t level) {
                 block);
             for (uint32_t k = 0; k < 4 && srgb; k++) {
                 uint8_t c = block[4 * (y % 4 * 4 + x % 4) + k];
-                out.rgba[4 * ((size_t)y * out.width + x) + k] = k < 3 ? masu_ref_srgb_decode(c / 255.0) : c / 255.0;
+                out.rgba[4 * ((size_t)y * out.width + x) + k] =
+                    k < 3 ? masu_ref_srgb_decode(c / 255.0) : c / 255.0;
             }
         }
     }
@@ -453,7 +454,8 @@ static void the_demo_draws_finite_pixels_at_every_rung(void **state) {
         masu_readback_image image;
         masu_frame_desc frame = {.rung = rung, .time = rung};
         draw(&s, &frame, &commands, NULL);
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL),
+                         MASU_OK);
         const uint16_t *hdr = image.pixels;
         for (uint32_t i = 0; i < 4 * image.width * image.height; i++) {
             assert_true(isfinite(half_float(hdr[i])));
@@ -517,7 +519,8 @@ static void what_is_offered_and_not_enabled_is_told(void **state) {
         s.desc.log = collect;
         if (!s.host.compressed) skip();
         if (!given) s.desc.vulkan.texture_compression_bc = 0, s.desc.vulkan.max_anisotropy = 0.0f;
-        if (given == 2) s.desc.vulkan.texture_compression_bc = 0, s.desc.deny.compressed_textures = 1;
+        if (given == 2)
+            s.desc.vulkan.texture_compression_bc = 0, s.desc.deny.compressed_textures = 1;
         assert_ok(masu_session_start(&s, error, sizeof error));
         const char *blocks = strstr(logged, "1 vulkan.texture_compression_bc is 0");
         /* a denied feature is not reported as missing */

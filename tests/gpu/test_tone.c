@@ -123,7 +123,8 @@ static void whatever_comes_in_a_finite_colour_goes_out(void **state) {
         const float *all = results[i].none;
         for (uint32_t k = 0; k < sizeof *results / sizeof(float); k++) {
             if (k % 4 == 3) continue;
-            if (!(all[k] >= 0 && all[k] <= 1.00001f)) fail_msg("case %u, number %u: %g", i, k, (double)all[k]);
+            if (!(all[k] >= 0 && all[k] <= 1.00001f))
+                fail_msg("case %u, number %u: %g", i, k, (double)all[k]);
         }
         /* Values that are not finite are in no bin; NaN and -Inf are black, Inf is white. */
         uint32_t bits[2];
@@ -306,7 +307,8 @@ static void what_is_not_metered_costs_nothing(void **state) {
     s.desc.exposure.metered = MASU_ON;
     assert_int_equal(masu_plan(&s.desc, &with, &detail), MASU_OK);
     for (uint32_t p = 0; p < with.pass_count; p++) {
-        int meters = !strcmp(with.passes[p].name, "meter") || !strcmp(with.passes[p].name, "expose");
+        int meters =
+            !strcmp(with.passes[p].name, "meter") || !strcmp(with.passes[p].name, "expose");
         assert_int_equal(with.passes[p].active, meters ? 7 : without.passes[p].active);
         if (meters) assert_int_equal(without.passes[p].active, 0);
     }

@@ -135,7 +135,8 @@ static void move(uint32_t i) {
     const pane *p = &panes[i];
     const float rows[12] = {(float)p->half, 0, 0, (float)p->x, 0,          (float)p->half, 0,
                             (float)p->y,    0, 0, 1,           (float)p->z};
-    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, i), rows, NULL), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, i), rows, NULL),
+                     MASU_OK);
 }
 
 static masu_stats_info render(const masu_camera *camera, float *hdr) {
@@ -158,7 +159,8 @@ static void random_panes(uint32_t count) {
                           .half = 0.4 + 1.6 * random_unit(&seed),
                           .opacity = (float)(1 + (int)(30 * random_unit(&seed))) / 32,
                           .additive = random_unit(&seed) < 0.2};
-        for (uint32_t k = 0; k < 3; k++) panes[i].color[k] = (float)(1 + (int)(31 * random_unit(&seed))) / 32;
+        for (uint32_t k = 0; k < 3; k++)
+            panes[i].color[k] = (float)(1 + (int)(31 * random_unit(&seed))) / 32;
     }
 }
 
@@ -241,7 +243,8 @@ static void panes_are_blended_the_farthest_first(void **state) {
         double worst = 0;
         uint32_t compared, least = PIXELS;
         for (int turn = 0; turn < 4; turn++) {
-            masu_camera camera = camera_at(2 * random_unit(&seed) - 1, 2 * random_unit(&seed) - 1, 9);
+            masu_camera camera =
+                camera_at(2 * random_unit(&seed) - 1, 2 * random_unit(&seed) - 1, 9);
             masu_stats_info stats = render(&camera, picture);
             assert_true(stats.transparents <= counts[c] && stats.draws == 0);
             worst = worst_of(worst, compare(&camera, &compared));
@@ -268,7 +271,8 @@ static void what_adds_up_does_so_in_any_order(void **state) {
         panes[i].additive = 1;
         panes[i].half = 2 + random_unit(&seed);
         panes[i].opacity = 0.5f;
-        for (uint32_t k = 0; k < 3; k++) panes[i].color[k] = (float)(int)(3 * random_unit(&seed)) / 32;
+        for (uint32_t k = 0; k < 3; k++)
+            panes[i].color[k] = (float)(int)(3 * random_unit(&seed)) / 32;
     }
     open_panes();
     masu_camera camera =
@@ -374,10 +378,12 @@ static void a_pane_cuts_an_sdf_and_polygons_alike(void **state) {
         rows[11] = there ? 0.5f : 100;
         assert_int_equal(masu_instance_set_transform(s.m, pane_handle, rows, NULL), MASU_OK);
         draw(&s, &frame, &commands, NULL);
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL),
+                         MASU_OK);
         float *to = there ? picture : base;
         floats_of_halves(image.pixels, to, 4 * PIXELS);
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image, NULL), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image, NULL),
+                         MASU_OK);
         memcpy(depth[there], image.pixels, sizeof depth[there]);
         assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
         assert_int_equal(stats.transparents, there);
@@ -507,8 +513,10 @@ static void write_faces(const char *name, int near_first) {
                                    .opacity = 0.5f,
                                    .meso = MASU_BLOB_NONE,
                                    .detail = {1, 1}};
-    masu_blob_environment environment = {
-        .sun_direction = {-0.8944272f, 0, 0.4472136f}, .sun_color = {2, 2, 2}, .exposure = 1, .near_distance = 0.1f};
+    masu_blob_environment environment = {.sun_direction = {-0.8944272f, 0, 0.4472136f},
+                                         .sun_color = {2, 2, 2},
+                                         .exposure = 1,
+                                         .near_distance = 0.1f};
     masu_blob_camera_key key = {.position = {0, 0, 10}, .fov_y = 0.5f};
     begin_blob();
     add(MASU_BLOB_VERTICES, sizeof *vertices, 8, vertices);

@@ -163,7 +163,8 @@ static void velocities_hold_the_jitter(void **state) {
     draw(&s, &f, &commands, NULL);
     camera.jitter[0] = 0.5f, camera.jitter[1] = -0.25f;
     draw(&s, &f, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL),
+                     MASU_OK);
     for (uint32_t p = 0; p < PIXELS; p++) {
         uint16_t v[4];
         memcpy(v, (const uint8_t *)image.pixels + image.row_bytes * (p / SIZE) + 8 * (p % SIZE),
@@ -188,7 +189,8 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     open_truth(&s);
     /* Steps of the raster in 64ths of a pixel: a vertex moves by up to one. */
     double grid = ldexp(64.0, -(int)s.host.properties.limits.subPixelPrecisionBits);
-    for (size_t i = 0; i < sizeof angles / sizeof *angles; i += long_run() ? 1 : 2) { /* at least both axes */
+    for (size_t i = 0; i < sizeof angles / sizeof *angles;
+         i += long_run() ? 1 : 2) { /* at least both axes */
         char error[ERROR_SIZE];
         double x[3], y[3], worst[2] = {0, 0}, sum[2] = {0, 0}, count[2] = {0, 0}, white = 0;
         plane_of(angles[i], x, y);
@@ -318,7 +320,8 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
     d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     d.desc.rungs[1] = (masu_rung){.silhouettes = MASU_OFF};
     if (bright) d.desc.tone = MASU_TONE_NONE;
-    masu_light light = {.sun_direction = {0, 1, 0}, .sky_zenith = {30, 30, 30}, .sky_horizon = {30, 30, 30}};
+    masu_light light = {
+        .sun_direction = {0, 1, 0}, .sky_zenith = {30, 30, 30}, .sky_horizon = {30, 30, 30}};
     open_session(&s, &d);
     for (size_t i = 0; i < sizeof angles / sizeof *angles; i += long_run() ? 1 : 2) {
         for (size_t j = 0; j < sizeof jitters / sizeof *jitters; j++) {
@@ -328,7 +331,8 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
             memcpy(camera.jitter, jitters[j], sizeof camera.jitter);
             x[2] += (double)jitters[j][0] * x[0] + (double)jitters[j][1] * x[1];
             y[2] += (double)jitters[j][0] * y[0] + (double)jitters[j][1] * y[1];
-            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = bright ? &light : NULL, .cut = 1};
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera,
+                                 .light = bright ? &light : NULL, .cut = 1};
             masu_commands commands;
             draw(&s, &f, &commands, picture);
             f.rung = 1;
@@ -361,8 +365,10 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
                 worst = fmax(worst, fabs(off));
                 sum += off * off, before += was * was, count++;
             }
-            print_message("  angle %.2f, jitter %g: worst %.3f, rms %.3f of a pixel, without %.3f, %g pixels\n", angles[i],
-                          (double)jitters[j][0], worst, sqrt(sum / fmax(count, 1)), sqrt(before / fmax(count, 1)), count);
+            print_message("  angle %.2f, jitter %g: worst %.3f, rms %.3f of a pixel, without %.3f, "
+                          "%g pixels\n",
+                          angles[i], (double)jitters[j][0], worst, sqrt(sum / fmax(count, 1)),
+                          sqrt(before / fmax(count, 1)), count);
             assert_true(count > SIZE / 4);
             assert_true(worst < 0.4 && sqrt(sum / count) < 0.16 && sum < before * 1.01);
         }
@@ -468,7 +474,8 @@ static void silhouettes_go_towards_the_truth(void **state) {
         close_session(&s);
         uint32_t nearer = 0, farther = 0;
         for (uint32_t p = 0; p < 4 * PIXELS; p += 4) {
-            uint32_t with = max_difference(picture + p, truth + p, 3), without = max_difference(plain + p, truth + p, 3);
+            uint32_t with = max_difference(picture + p, truth + p, 3),
+                     without = max_difference(plain + p, truth + p, 3);
             nearer += with + 16 < without, farther += with > without + 16;
         }
         print_message("  %s: %u pixels with a lower error, %u with a higher one\n",

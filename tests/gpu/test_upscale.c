@@ -148,7 +148,8 @@ static void easu_as_shipped_differs_where_the_last_bit_decides(void **state) {
     for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
         difference d = {0, 0, 0};
         for (size_t i = 0; i < SIZES; i++) {
-            job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON, MASU_OFF, .shipped = 1};
+            job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3],
+                     MASU_ON,     MASU_OFF,    .shipped = 1};
             masu_pattern_fill((enum masu_pattern)pattern, 11 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, i % 2 ? 0xFFFFFFFFu : 0xFF00FF00u, gpu);
             reference_upscale(&j, in, cpu);
@@ -169,7 +170,8 @@ static void twice_the_size_is_easu_as_shipped(void **state) {
     for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
         difference d = {0, 0, 0};
         for (size_t i = 0; i < sizeof from / sizeof *from; i++) {
-            job j = {from[i][0], from[i][1], 2 * from[i][0], 2 * from[i][1], MASU_ON, MASU_OFF, .shipped = 1};
+            job j = {from[i][0], from[i][1], 2 * from[i][0], 2 * from[i][1],
+                     MASU_ON,    MASU_OFF,   .shipped = 1};
             masu_pattern_fill((enum masu_pattern)pattern, 31 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, i % 2 ? 0xFFFFFFFFu : 0xFF00FF00u, gpu);
             reference_upscale(&j, in, cpu);
@@ -189,13 +191,15 @@ static void rcas_as_shipped_is_the_scalar_reference_within_one_step(void **state
         difference d = {0, 0, 0};
         for (size_t i = 0; i < 4; i++) {
             /* A size of whole workgroups, too. */
-            job j = {i ? 61 : 64, i ? 47 : 48, i ? 61 : 64, i ? 47 : 48, MASU_AUTO, MASU_ON, stops[i], .shipped = 1};
+            job j = {i ? 61 : 64, i ? 47 : 48, i ? 61 : 64, i ? 47 : 48,
+                     MASU_AUTO,   MASU_ON,     stops[i],    .shipped = 1};
             masu_pattern_fill((enum masu_pattern)pattern, 5 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0xFFFFFFFFu, gpu);
             reference_rcas(j.out_w, j.out_h, j.stops, in, cpu);
             add_difference(gpu, cpu, j.out_w * j.out_h, &d);
         }
-        print_message("  rcas      %-12s worst %u/255\n", masu_pattern_name((enum masu_pattern)pattern), d.worst);
+        print_message("  rcas      %-12s worst %u/255\n",
+                      masu_pattern_name((enum masu_pattern)pattern), d.worst);
         assert_true(d.worst <= 1);
     }
 }
@@ -333,7 +337,8 @@ static void flat_pictures_stay_exactly_as_they_are(void **state) {
         memset(in, levels[i % sizeof levels], sizeof in);
         run_gpu(&j, in, 0xFF804020u, gpu);
         for (uint32_t k = 0; k < j.out_w * j.out_h; k++) {
-            for (uint32_t ch = 0; ch < 3; ch++) assert_int_equal(gpu[4 * k + ch], levels[i % sizeof levels]);
+            for (uint32_t ch = 0; ch < 3; ch++)
+                assert_int_equal(gpu[4 * k + ch], levels[i % sizeof levels]);
         }
     }
 }
@@ -524,8 +529,9 @@ static void halves_change_easu_by_this_much(void **state) {
             }
             count += 3.0 * j.out_w * j.out_h;
         }
-        print_message("  halves    %-4s %-12s rms %.2f, worst %u/255\n", easu == MASU_EASU_FAST ? "fast" : "full",
-                      masu_pattern_name(pattern), sqrt(sum / count), worst);
+        print_message("  halves    %-4s %-12s rms %.2f, worst %u/255\n",
+                      easu == MASU_EASU_FAST ? "fast" : "full", masu_pattern_name(pattern),
+                      sqrt(sum / count), worst);
         assert_true(worst <= HALF_STEPS && sqrt(sum / count) < 0.75);
         assert_true(pattern != MASU_PATTERN_FLAT || worst == 0);
         /* otherwise it was not in half floats */

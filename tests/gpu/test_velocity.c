@@ -71,9 +71,10 @@ static double field(const moment *m, vec p, int kind) {
 
 static vec gradient(const moment *m, vec p, int kind) {
     double h = 1e-6;
-    return (vec){field(m, vec_add(p, (vec){h, 0, 0}), kind) - field(m, vec_add(p, (vec){-h, 0, 0}), kind),
-                 field(m, vec_add(p, (vec){0, h, 0}), kind) - field(m, vec_add(p, (vec){0, -h, 0}), kind),
-                 field(m, vec_add(p, (vec){0, 0, h}), kind) - field(m, vec_add(p, (vec){0, 0, -h}), kind)};
+    return (vec){
+        field(m, vec_add(p, (vec){h, 0, 0}), kind) - field(m, vec_add(p, (vec){-h, 0, 0}), kind),
+        field(m, vec_add(p, (vec){0, h, 0}), kind) - field(m, vec_add(p, (vec){0, -h, 0}), kind),
+        field(m, vec_add(p, (vec){0, 0, h}), kind) - field(m, vec_add(p, (vec){0, 0, -h}), kind)};
 }
 
 typedef struct eye {
@@ -158,7 +159,8 @@ static vec before(const moment *now, const moment *was, vec p, int kind) {
     case MOVER: return mover_out(was->time, mover_in(now->time, p));
     case GROWER: {
         vec c = {0, 0.2, 0};
-        return vec_add(p, vec_scale(vec_unit(vec_sub(p, c)), (double)was->radius - (double)now->radius));
+        return vec_add(
+            p, vec_scale(vec_unit(vec_sub(p, c)), (double)was->radius - (double)now->radius));
     }
     case MORPHER: return surface_before(now, was, p, kind);
     case BOX: return box_before(now, was, p);
@@ -192,7 +194,8 @@ static void take(masu_session *s, const moment *m, uint32_t cut, picture *p) {
     draw(s, &frame, &commands, NULL);
     if (!p) return;
     view_depths(read_image(s, commands.slot, MASU_READBACK_DEPTH), &m->camera, p->depth, W * H);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL),
+                     MASU_OK);
     assert_int_equal(image.format, VK_FORMAT_R16G16B16A16_SFLOAT);
     assert_int_equal(image.row_bytes, W * 8);
     const uint16_t *velocity = image.pixels;
@@ -430,7 +433,8 @@ static void a_field_by_hand_is_followed_along_its_normal(void **state) {
     draw(&s, &frame, &commands, NULL);
     assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image, NULL), MASU_OK);
     const float *depth = image.pixels;
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL),
+                     MASU_OK);
     const uint16_t *texels = image.pixels;
     eye e = eye_of(&c);
     double worst = 0, longest = 0;
@@ -438,8 +442,10 @@ static void a_field_by_hand_is_followed_along_its_normal(void **state) {
         if (!(depth[i] > 0)) continue;
         double x = i % W + 0.5, y = i / W + 0.5, px, py, pz;
         vec p = vec_add(e.position, vec_scale(ray_through(&e, x, y), 0.1 / (double)depth[i]));
-        project(&e, vec_sub(vec_scale(vec_unit(p), sqrt(vec_dot(p, p)) - 0.1), e.position), &px, &py, &pz);
-        worst = worst_of(worst, hypot(half_float(texels[4 * i]) - (px - x), half_float(texels[4 * i + 1]) - (py - y)));
+        project(&e, vec_sub(vec_scale(vec_unit(p), sqrt(vec_dot(p, p)) - 0.1), e.position), &px,
+                &py, &pz);
+        worst = worst_of(worst, hypot(half_float(texels[4 * i]) - (px - x),
+                                      half_float(texels[4 * i + 1]) - (py - y)));
         longest = fmax(longest, hypot(px - x, py - y));
     }
     print_message("  longest motion %.2f px, error %.4f px\n", longest, worst);
@@ -469,7 +475,8 @@ static void take_static(const char *scene, float depth[W * H], uint16_t velocity
         draw(&s, &frame, &commands, NULL);
     }
     view_depths(read_image(&s, commands.slot, MASU_READBACK_DEPTH), &cameras[1], depth, W * H);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL),
+                     MASU_OK);
     memcpy(velocity, image.pixels, 4 * W * H * sizeof *velocity);
     close_session(&s);
 }
@@ -480,8 +487,9 @@ static void a_static_field_moves_by_the_camera_alone(void **state) {
     (void)state;
     static float depth[2][W * H];
     static uint16_t velocity[2][4 * W * H];
-    masu_camera c[2] = {{.position = {0.3, 0.2, 3.2}, .forward = {0, 0, -1}, .fov_y = 0.8f},
-                        {.position = {0.1, 0.3, 3.0}, .forward = {0.05f, -0.02f, -1}, .fov_y = 0.8f}};
+    masu_camera c[2] = {
+        {.position = {0.3, 0.2, 3.2}, .forward = {0, 0, -1}, .fov_y = 0.8f},
+        {.position = {0.1, 0.3, 3.0}, .forward = {0.05f, -0.02f, -1}, .fov_y = 0.8f}};
     c[0].near_distance = c[1].near_distance = 0.1f;
     take_static("test_sphere_sdf", depth[0], velocity[0], c, "sdf_velocity_alone");
     take_static("test_sphere_static", depth[1], velocity[1], c, "static_velocity_alone");

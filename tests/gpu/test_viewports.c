@@ -11,11 +11,16 @@ static masu_detail failure; /* of the last call that failed */
 
 enum { W = 160, H = 90, VIEWS = 3 };
 
-static const masu_viewport left_right_map[VIEWS] = {{0, 0, 81, 90}, {81, 0, 79, 90}, {97, 7, 40, 24}};
+static const masu_viewport left_right_map[VIEWS] = {
+    {0, 0, 81, 90}, {81, 0, 79, 90}, {97, 7, 40, 24}};
 static const masu_camera cameras[VIEWS] = {
     {.position = {0, 2.5, 7}, .forward = {0, -0.2f, -1}, .fov_y = 0.9f, .near_distance = 0.05f},
     {.position = {6, 2, 3}, .forward = {-1, -0.2f, -0.5f}, .fov_y = 1.1f, .near_distance = 0.05f},
-    {.position = {0, 14, 0}, .forward = {0, -1, 0}, .up = {0, 0, -1}, .fov_y = 0.8f, .near_distance = 0.05f}};
+    {.position = {0, 14, 0},
+     .forward = {0, -1, 0},
+     .up = {0, 0, -1},
+     .fov_y = 0.8f,
+     .near_distance = 0.05f}};
 static const uint32_t rungs[VIEWS] = {0, 1, 2};
 
 static uint8_t shown[W * H * 4], alone[W * H * 4];
@@ -34,7 +39,8 @@ static masu_desc desc_of(const masu_session *s, uint32_t width, uint32_t height)
 }
 
 /* cut: whether the host requests a cut; between different views it is not needed. */
-static masu_commands frame_of(masu_session *s, own_renderer *x, uint32_t view, uint32_t viewport, int cut) {
+static masu_commands frame_of(masu_session *s, own_renderer *x, uint32_t view, uint32_t viewport,
+                              int cut) {
     char error[ERROR_SIZE];
     masu_commands commands;
     masu_frame_desc frame = {
@@ -65,7 +71,8 @@ static void compare(masu_session *s, own_renderer *x, const masu_viewport *views
     for (uint32_t k = 0; k < VIEWS; k++) {
         masu_commands commands = frame_of(s, x, k, k, 0);
         masu_readback_image depth;
-        assert_int_equal(masu_readback(x->m, commands.slot, MASU_READBACK_DEPTH, &depth, &failure), MASU_OK);
+        assert_int_equal(masu_readback(x->m, commands.slot, MASU_READBACK_DEPTH, &depth, &failure),
+                         MASU_OK);
         if (rungs[k] != 1) assert_int_equal(depth.width, views[k].width);
         if (rungs[k] == 1) assert_int_equal(depth.height, (uint32_t)(views[k].height * 0.6 + 0.5));
     }
@@ -84,7 +91,8 @@ static void compare(masu_session *s, own_renderer *x, const masu_viewport *views
                 uint32_t px = views[k].x + i, py = views[k].y + y;
                 if (view_at(views, px, py) != k) continue;
                 seen++;
-                off += memcmp(shown + 4 * (py * W + px), alone + 4 * (y * views[k].width + i), 4) != 0;
+                off +=
+                    memcmp(shown + 4 * (py * W + px), alone + 4 * (y * views[k].width + i), 4) != 0;
             }
         }
         unmake_own(s, &fresh);
@@ -147,7 +155,9 @@ static void what_is_no_part_is_refused(void **state) {
     assert_int_equal(masu_memory_query(&d, &need, &detail), MASU_ERROR_ARGUMENT);
     assert_non_null(strstr(detail.text, "of storage targets they begin at 0, 0"));
     masu_commands commands;
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .viewport = 1}, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(
+        masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .viewport = 1}, &commands, &failure),
+        MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.text, "viewport 1 does not exist, the last one is 0");
     unmake_own(&s, &x);
     d = desc_of(&s, W, H);
@@ -160,7 +170,9 @@ static void what_is_no_part_is_refused(void **state) {
     assert_string_equal(failure.what, "rung");
     static masu_plan_info before, after; /* a rejected description has not been read */
     masu_plan_of(x.m, &before);
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .viewport = VIEWS}, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .viewport = VIEWS},
+                                &commands, &failure),
+                     MASU_ERROR_ARGUMENT);
     masu_plan_of(x.m, &after);
     assert_memory_equal(before.rungs, after.rungs, sizeof before.rungs);
     for (uint32_t i = 0; i < 12; i++) (void)frame_of(&s, &x, 0, i % VIEWS, 1);

@@ -52,14 +52,16 @@ static void run(uint32_t count) {
 static uint64_t state = 1;
 
 static void direction(float low, float out[3]) {
-    double z = (double)low + (1 - (double)low) * (double)random_float(&state), phi = 6.283185307 * (double)random_float(&state);
+    double z = (double)low + (1 - (double)low) * (double)random_float(&state),
+           phi = 6.283185307 * (double)random_float(&state);
     out[0] = (float)(sqrt(1 - z * z) * cos(phi));
     out[1] = (float)(sqrt(1 - z * z) * sin(phi));
     out[2] = (float)z;
 }
 
 static test_case any_case(void) {
-    test_case c = {.roughness = random_float(&state), .u = {random_float(&state), random_float(&state)}};
+    test_case c = {.roughness = random_float(&state),
+                   .u = {random_float(&state), random_float(&state)}};
     float other[3];
     direction(0.002f, c.view);
     direction(-1, c.normal);
@@ -100,7 +102,8 @@ static void the_gpu_draws_what_c_draws(void **unused) {
         pdf_off = worst_of(pdf_off, fabs((double)(got->pdf - pdf)) / (1e-3 + (double)pdf));
         weight_off = worst_of(weight_off, fabs((double)(got->weight - weight)));
         float far = masu_vndf_pdf(v, o, alpha);
-        other_off = worst_of(other_off, fabs((double)(got->other_pdf - far)) / (1e-3 + (double)far));
+        other_off =
+            worst_of(other_off, fabs((double)(got->other_pdf - far)) / (1e-3 + (double)far));
         weight = masu_vndf_weight(v, o, alpha);
         weight_off = worst_of(weight_off, fabs((double)(got->other_weight - weight)));
         masu_axes f = masu_axes_of(vec3(c->normal[0], c->normal[1], c->normal[2]));

@@ -24,11 +24,20 @@ static picture whole, quarters;
 static int added;
 static const masu_particle particles[] = {
     {.position = {0.3, 0.2, 1.2}, .half_width = 0.4f, .color = {3, 1, 0.2f}, .opacity = 0.7f},
-    {.position = {-0.5, -0.2, 0.9}, .half_width = 0.3f, .color = {0.1f, 0.6f, 2}, .opacity = 0.8f, .edge = 0.5f}};
-static const masu_decal decals[] = {
-    {.rows = {1.1f, 0, 0, 0, 0, 1.1f, 0, 0, 0, 0, 1.5f, 0}, .color = {0.9f, 0.1f, 0.1f}, .opacity = 0.9f, .roughness = 0.5f}};
-static const masu_line lines[] = {
-    {.from = {-1.5, -0.6, 0.6}, .to = {1.4, 0.9, 0.5}, .from_color = {255, 255, 0, 0}, .to_color = {255, 255, 0, 0}, .flags = MASU_LINE_ON_TOP}};
+    {.position = {-0.5, -0.2, 0.9},
+     .half_width = 0.3f,
+     .color = {0.1f, 0.6f, 2},
+     .opacity = 0.8f,
+     .edge = 0.5f}};
+static const masu_decal decals[] = {{.rows = {1.1f, 0, 0, 0, 0, 1.1f, 0, 0, 0, 0, 1.5f, 0},
+                                     .color = {0.9f, 0.1f, 0.1f},
+                                     .opacity = 0.9f,
+                                     .roughness = 0.5f}};
+static const masu_line lines[] = {{.from = {-1.5, -0.6, 0.6},
+                                   .to = {1.4, 0.9, 0.5},
+                                   .from_color = {255, 255, 0, 0},
+                                   .to_color = {255, 255, 0, 0},
+                                   .flags = MASU_LINE_ON_TOP}};
 
 static void open_at(masu_session *s, const char *scene, uint32_t width, uint32_t height) {
     masu_session_desc d = test_desc(scene, width, height);
@@ -43,8 +52,8 @@ static void open_at(masu_session *s, const char *scene, uint32_t width, uint32_t
 }
 
 /* Two frames, so that there are velocities: the camera and the window move. */
-static void draw_two(masu_session *s, const masu_camera *camera, const float window[4], picture *out,
-                     uint32_t at_x, uint32_t at_y, uint32_t width, uint32_t height) {
+static void draw_two(masu_session *s, const masu_camera *camera, const float window[4],
+                     picture *out, uint32_t at_x, uint32_t at_y, uint32_t width, uint32_t height) {
     static uint8_t pixels[W * H * 4];
     masu_commands commands;
     for (int i = 0; i < 2; i++) {
@@ -91,7 +100,8 @@ static differences compare(int seam) {
         d.depth += !(fabs(a - b) <= 1e-3 * fmax(a, b));
         int off = 0;
         for (uint32_t k = 0; k < 3; k++) {
-            double x = half_float(whole.velocity[4 * i + k]), y = half_float(quarters.velocity[4 * i + k]);
+            double x = half_float(whole.velocity[4 * i + k]),
+                   y = half_float(quarters.velocity[4 * i + k]);
             off |= !(fabs(x - y) <= 0.01 + 2e-3 * fabs(x));
             d.moved += k == 0 && fabs(x) > 0.1;
         }
@@ -114,7 +124,8 @@ static void quarters_of(const char *scene, masu_camera camera, double budget, in
         close_session(&s);
     }
     differences d = compare(seam);
-    print_message("  %s: of %d pixels %u of colour, %u of depth, %u of velocity differ, worst %u; %u surfaces\n",
+    print_message("  %s: of %d pixels %u of colour, %u of depth, %u of velocity differ, worst %u; "
+                  "%u surfaces\n",
                   scene, W * H, d.color, d.depth, d.velocity, d.worst, d.surfaces);
     assert_in_range(d.surfaces, W * H / 8, W * H);
     assert_in_range(d.moved, W * H / 2, W * H);
@@ -126,7 +137,8 @@ static void quarters_of(const char *scene, masu_camera camera, double budget, in
 /* Edges that pass within rounding of a pixel's centre may fall on either side. */
 #define EDGES 0.002
 
-static const masu_camera before_it = {.position = {1.2, 0.9, 3.2}, .forward = {-1.2f, -0.9f, -3.2f}, .near_distance = 0.1f};
+static const masu_camera before_it = {
+    .position = {1.2, 0.9, 3.2}, .forward = {-1.2f, -0.9f, -3.2f}, .near_distance = 0.1f};
 
 static void quarters_make_the_whole_of_polygons_and_sdf(void **state) {
     (void)state;
@@ -136,30 +148,43 @@ static void quarters_make_the_whole_of_polygons_and_sdf(void **state) {
 static void quarters_make_the_whole_with_cascades(void **state) {
     (void)state;
     quarters_of("test_shadows",
-                (masu_camera){.position = {3.2, 2.6, 5.2}, .forward = {-3.2f, -2.0f, -5.6f}, .near_distance = 0.1f},
+                (masu_camera){.position = {3.2, 2.6, 5.2},
+                              .forward = {-3.2f, -2.0f, -5.6f},
+                              .near_distance = 0.1f},
                 EDGES, 0);
 }
 
 static void quarters_make_the_whole_with_punctual_lights(void **state) {
     (void)state;
-    quarters_of("night", (masu_camera){.position = {6, 3, 9}, .forward = {-6, -2.5f, -9}, .near_distance = 0.1f}, EDGES, 0);
+    quarters_of(
+        "night",
+        (masu_camera){.position = {6, 3, 9}, .forward = {-6, -2.5f, -9}, .near_distance = 0.1f},
+        EDGES, 0);
 }
 
 static void quarters_make_the_whole_with_reflections(void **state) {
     (void)state;
-    quarters_of("test_reflections",
-                (masu_camera){.position = {0, 3, 5}, .forward = {0, -3, -3}, .near_distance = 0.05f}, EDGES, 2);
+    quarters_of(
+        "test_reflections",
+        (masu_camera){.position = {0, 3, 5}, .forward = {0, -3, -3}, .near_distance = 0.05f}, EDGES,
+        2);
 }
 
 static void quarters_make_the_whole_of_a_moving_sdf(void **state) {
     (void)state;
     quarters_of("test_velocity",
-                (masu_camera){.position = {0.6, 1.2, 4.5}, .forward = {-0.6f, -1, -4.5f}, .near_distance = 0.1f}, EDGES, 0);
+                (masu_camera){.position = {0.6, 1.2, 4.5},
+                              .forward = {-0.6f, -1, -4.5f},
+                              .near_distance = 0.1f},
+                EDGES, 0);
 }
 
 static void quarters_make_the_whole_of_blended_things_and_an_analytic_sky(void **state) {
     (void)state;
-    quarters_of("glass", (masu_camera){.position = {0, 2, 7}, .forward = {0, -0.2f, -1}, .near_distance = 0.1f}, EDGES, 0);
+    quarters_of(
+        "glass",
+        (masu_camera){.position = {0, 2, 7}, .forward = {0, -0.2f, -1}, .near_distance = 0.1f},
+        EDGES, 0);
 }
 
 /* They are also visible: the image without them differs. */
@@ -172,7 +197,8 @@ static void quarters_make_the_whole_with_what_the_host_adds(void **state) {
     quarters_of("test_both", before_it, EDGES, 0);
     added = 0;
     uint32_t changed = 0;
-    for (uint32_t i = 0; i < W * H; i++) changed += max_difference(without + 4 * i, whole.color + 4 * i, 4) > 8;
+    for (uint32_t i = 0; i < W * H; i++)
+        changed += max_difference(without + 4 * i, whole.color + 4 * i, 4) > 8;
     assert_in_range(changed, W * H / 16, W * H);
 }
 
@@ -189,7 +215,8 @@ static void a_window_far_to_the_side_is_part_of_a_wide_picture(void **state) {
     open_at(&s, "test_both", PART_W, PART_H);
     uint32_t x = 124, y = 96; /* the window's first pixel */
     float l = -4 + 8.0f * (float)x / W, t = 4 - 8.0f * (float)y / H;
-    draw_two(&s, &c, (float[4]){l, l + 8.0f * PART_W / W, t - 8.0f * PART_H / H, t}, &quarters, x, y, PART_W, PART_H);
+    draw_two(&s, &c, (float[4]){l, l + 8.0f * PART_W / W, t - 8.0f * PART_H / H, t}, &quarters, x,
+             y, PART_W, PART_H);
     close_session(&s);
     uint32_t off = 0, seen = 0;
     for (uint32_t i = x; i < x + PART_W; i++) {

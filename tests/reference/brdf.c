@@ -211,7 +211,8 @@ void brdf_over(const uint32_t *words, const brdf_surface *s, const double n[3], 
                                   through(&m, over_v, over_l)
                             : 0;
         double coat = over_l > 0 ? s->coat * (0.04 + 0.96 * power5(v_h)) *
-                                       lobe(alpha_of(s->coat_roughness), unit_range(dot3(n, h) / size), over_v, over_l)
+                                       lobe(alpha_of(s->coat_roughness),
+                                            unit_range(dot3(n, h) / size), over_v, over_l)
                                  : 0;
         f += (rest * to.lost + diffuse * (1 - matte(&m, to))) / PI;
         out[k] = (f * mu_l + coat * over_l) * PI;
@@ -223,8 +224,8 @@ void brdf_eval(const uint32_t *words, const brdf_surface *s, const double v[3], 
     brdf_over(words, s, (const double[]){0, 0, 1}, v, l, out);
 }
 
-void brdf_ambient(const uint32_t *words, const brdf_surface *s, const double n[3], const double v[3],
-                  double diffuse[3], double specular[3], double *coat) {
+void brdf_ambient(const uint32_t *words, const brdf_surface *s, const double n[3],
+                  const double v[3], double diffuse[3], double specular[3], double *coat) {
     model m = model_of(words, s);
     returned from = returned_over(&m, fmax(v[2], 1e-4), fmax(dot3(n, v), 1e-4));
     for (int k = 0; k < 3; k++) {

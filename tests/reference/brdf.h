@@ -25,14 +25,14 @@ void brdf_eval(const uint32_t *words, const brdf_surface *s, const double v[3], 
                double out[3]);
 
 /* The same with a coat that has a separate unit normal; +z is the normal of the base. */
-void brdf_over(const uint32_t *words, const brdf_surface *s, const double coat_normal[3], const double v[3],
-               const double l[3], double out[3]);
+void brdf_over(const uint32_t *words, const brdf_surface *s, const double coat_normal[3],
+               const double v[3], const double l[3], double out[3]);
 
 /* Reflected light under uniform illumination: factors of irradiance / pi, of the radiance in the
  * base's mirror direction, and of the radiance in the coat's. v is unit, the normal of the base
  * +z. */
-void brdf_ambient(const uint32_t *words, const brdf_surface *s, const double coat_normal[3], const double v[3],
-                  double diffuse[3], double specular[3], double *coat);
+void brdf_ambient(const uint32_t *words, const brdf_surface *s, const double coat_normal[3],
+                  const double v[3], double diffuse[3], double specular[3], double *coat);
 
 /* The total reflected light of uniform radiance 1, by quadrature of each lobe. */
 void brdf_furnace(const uint32_t *words, const brdf_surface *s, double mu, int steps,

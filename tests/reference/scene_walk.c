@@ -118,8 +118,9 @@ static void read_map(walker *w, const masu_blob_material *m, uint32_t slot) {
     const masu_blob_texture *t = &w->view.textures[texture];
     uint32_t layer = (slot < 4 ? m->layers >> 8 * slot : m->more_layers >> 8 * (slot - 4)) & 255;
     expect(w, layer < 256 && layer < t->layers, "a map has no layer");
-    static const uint32_t formats[MASU_SLOT_COUNT] = {1u << 1 | 1u << 2, 1u << 4, 1u << 3 | 1u << 4,
-                                                      1u << 1, 1u << 3, 1u << 4}; /* allowed, by number */
+    static const uint32_t formats[MASU_SLOT_COUNT] = {
+        1u << 1 | 1u << 2, 1u << 4, 1u << 3 | 1u << 4,
+        1u << 1,           1u << 3, 1u << 4}; /* allowed, by number */
     expect(w, formats[slot] >> t->format & 1, "a map's format");
     if (slot == MASU_SLOT_BASE && m->flags & MASU_MATERIAL_IS_MASK) {
         expect(w, t->format == MASU_TEXTURE_BC3_SRGB, "a mask has no alpha");
@@ -359,7 +360,8 @@ static void read_geometry(walker *w) {
                        o->high[k] <= v->meshes[o->mesh].aabb_max[k],
                    "an occluder is not in its mesh");
         }
-        for (uint32_t n = 0; n < w->scene->instances; n++) placed += v->instances[n].mesh == o->mesh;
+        for (uint32_t n = 0; n < w->scene->instances; n++)
+            placed += v->instances[n].mesh == o->mesh;
     }
     expect(w, placed == w->scene->placed_occluders, "placed_occluders");
     uint32_t grouped = 0;
@@ -464,14 +466,17 @@ static void read_code(walker *w) {
     int timeless = w->view.sdf && w->view.sdf->flags & MASU_SDF_TIMELESS;
     expect(w, w->scene->sdf_dynamic == (uint32_t)timed, "sdf_dynamic");
     expect(w, w->scene->sdf_timed == (uint32_t)(w->view.sdf && !timeless), "sdf_timed");
-    expect(w, w->scene->sdf_static == (uint32_t)(w->view.sdf && !w->view.code[MASU_BLOB_VELOCITY_SPIRV].words),
+    expect(w,
+           w->scene->sdf_static ==
+               (uint32_t)(w->view.sdf && !w->view.code[MASU_BLOB_VELOCITY_SPIRV].words),
            "sdf_static");
     expect(w, w->scene->sdf_anchored == (uint32_t)anchored, "sdf_anchored");
     expect(w, (w->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL) == (timed || anchored),
            "update SPIR-V");
     expect(w, w->scene->sdf_occlusion == (w->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL),
            "sdf_occlusion");
-    expect(w, w->scene->sdf_casts == (w->view.code[MASU_BLOB_LOCAL_SHADOW_SPIRV].words != NULL), "sdf_casts");
+    expect(w, w->scene->sdf_casts == (w->view.code[MASU_BLOB_LOCAL_SHADOW_SPIRV].words != NULL),
+           "sdf_casts");
     expect(w, w->scene->trace_sdf == (w->view.code[MASU_BLOB_TRACE_SDF_SPIRV].words != NULL),
            "trace_sdf");
 }

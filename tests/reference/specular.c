@@ -250,7 +250,8 @@ masu_ref_estimate masu_ref_mirrored(const masu_ref_mirror *m, const masu_ref_sur
         double n_l = dot3(s->normal, l);
         if (!(h_v > 0 && n_l > 0)) continue;
         base.tan2 = coat.tan2 = tan2, base.n_h = coat.n_h = n_h, base.n_l = coat.n_l = n_l;
-        double pdf = density(&base), worth = value(&base), coated = 0, steep = pow(fmax(1 - h_v, 0), 5);
+        double pdf = density(&base), worth = value(&base), coated = 0,
+               steep = pow(fmax(1 - h_v, 0), 5);
         if (s->coat > 0) {
             pdf = 0.5 * (pdf + density(&coat));
             worth *= through_of(s, n_l, n_v);

@@ -88,7 +88,8 @@ uint32_t masu_ref_meter(const double *rgb, size_t count, size_t stride, double l
 
 uint32_t masu_ref_dither(double v, uint32_t steps, uint32_t x, uint32_t y, uint32_t frame,
                          uint32_t channel) {
-    uint32_t noise = x * 0xC13FA9A9u + y * 0x91E10DA5u + frame * 0x9E3779B9u + channel * 0x55555555u;
+    uint32_t noise =
+        x * 0xC13FA9A9u + y * 0x91E10DA5u + frame * 0x9E3779B9u + channel * 0x55555555u;
     double scaled = v * steps, near = floor(scaled + 0.5);
     double step = fabs(scaled - near) < 1e-3 ? near : floor(scaled + (noise >> 8) / 16777216.0);
     return step < steps ? (uint32_t)step : steps;

@@ -130,7 +130,8 @@ static const masu_blob_material mapped[] = {
 static const float texcoords[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {-3.5f, 2},   {0.5f, 0.5f},
                                      {7, 7}, {0, 0}, {4, 0}, {4, 4}, {0, 32768.0f}};
 
-static const uint32_t colors[] = {0xFF0000FF, 0xFF00FF00, MASU_BLOB_WHITE, 0x80FF0000, 0, 1, 2, 3, 4, 5, 6};
+static const uint32_t colors[] = {
+    0xFF0000FF, 0xFF00FF00, MASU_BLOB_WHITE, 0x80FF0000, 0, 1, 2, 3, 4, 5, 6};
 
 static const masu_blob_texture textures[] = {
     {MASU_TEXTURE_BC3_SRGB, 8, 8, 4, 2, NAME_PLATE, 0},
@@ -248,7 +249,8 @@ static const masu_blob_skin_vertex skin_vertices[] = {
 };
 
 /* Clips of the last model: "bend" moves both and rotates "lid"; "glow" enlarges it in one step. */
-static const masu_blob_clip clips[] = {{2, 0, 2, 2.0f, NAME_BEND, {0}}, {2, 2, 1, 0.5f, NAME_GLOW, {0}}};
+static const masu_blob_clip clips[] = {{2, 0, 2, 2.0f, NAME_BEND, {0}},
+                                       {2, 2, 1, 0.5f, NAME_GLOW, {0}}};
 
 static const masu_blob_channel channels[] = {
     {0, MASU_CHANNEL_TRANSLATION, 0, 0, 2, 0, {0}},
@@ -257,7 +259,8 @@ static const masu_blob_channel channels[] = {
 };
 
 /* The same, and "bend" raises the weight of the first morph target of the skin at its node. */
-static const masu_blob_clip morph_clips[] = {{2, 0, 3, 2.0f, NAME_BEND, {0}}, {2, 3, 1, 0.5f, NAME_GLOW, {0}}};
+static const masu_blob_clip morph_clips[] = {{2, 0, 3, 2.0f, NAME_BEND, {0}},
+                                             {2, 3, 1, 0.5f, NAME_GLOW, {0}}};
 static const masu_blob_channel morph_channels[] = {
     {0, MASU_CHANNEL_TRANSLATION, 0, 0, 2, 0, {0}},
     {1, MASU_CHANNEL_ROTATION, 0, 2, 2, 0, {0}},
@@ -313,7 +316,8 @@ static void add_code(support_blob *blob, enum masu_blob_kind kind) {
                              2u << 16 | 17, 1,    /* OpCapability Shader */
                              3u << 16 | 14, 0, 1, /* OpMemoryModel Logical GLSL450 */
                              5u << 16 | 15, 5, 1, 0x6E69616Du, 0}; /* OpEntryPoint %1 "main" */
-    const uint32_t compute[] = {6u << 16 | 16, 1, 17, columns, update ? 1u : 8u, 1}; /* OpExecutionMode LocalSize */
+    const uint32_t compute[] = {6u << 16 | 16,    1, 17, columns,
+                                update ? 1u : 8u, 1};   /* OpExecutionMode LocalSize */
     const uint32_t tail[] = {2u << 16 | 19, 2,          /* %2 = OpTypeVoid */
                              3u << 16 | 33, 3, 2,       /* %3 = OpTypeFunction %2 */
                              5u << 16 | 54, 2, 1, 0, 3, /* %1 = OpFunction %2 None %3 */
@@ -332,20 +336,24 @@ static void add_code(support_blob *blob, enum masu_blob_kind kind) {
 }
 
 void support_blob_recode(support_blob *blob) {
-    const masu_blob_section *slots = support_blob_row(blob, MASU_BLOB_SLOTS), *field = support_blob_row(blob, MASU_BLOB_SDF);
+    const masu_blob_section *slots = support_blob_row(blob, MASU_BLOB_SLOTS),
+                            *field = support_blob_row(blob, MASU_BLOB_SDF);
     for (uint32_t kind = 0; kind < MASU_BLOB_KIND_COUNT && field; kind++) {
-        masu_blob_section *row = is_code(kind) ? support_blob_row(blob, (enum masu_blob_kind)kind) : NULL;
+        masu_blob_section *row =
+            is_code(kind) ? support_blob_row(blob, (enum masu_blob_kind)kind) : NULL;
         if (!row) continue;
         const masu_blob_sdf *s = (const masu_blob_sdf *)(const void *)(blob->bytes + field->offset);
-        const masu_module_counts counts = {.kind = kind,
-                                         .parts = s->part_count,
-                                         .slots = slots ? (uint32_t)slots->count : 0,
-                                         .block_words = s->block_words,
-                                         .raster = s->has_raster,
-                                         .anchored = s->flags & MASU_SDF_ANCHORED,
-                                         .moves = support_blob_row(blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV) != NULL};
+        const masu_module_counts counts = {
+            .kind = kind,
+            .parts = s->part_count,
+            .slots = slots ? (uint32_t)slots->count : 0,
+            .block_words = s->block_words,
+            .raster = s->has_raster,
+            .anchored = s->flags & MASU_SDF_ANCHORED,
+            .moves = support_blob_row(blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV) != NULL};
         uint32_t *words = (uint32_t *)(void *)(blob->bytes + row->offset);
-        masu_module_record(&counts, (char *)(words + masu_module_record_place(words, row->count) - MASU_MODULE_RECORD_WORDS + 1));
+        masu_module_record(&counts, (char *)(words + masu_module_record_place(words, row->count) -
+                                             MASU_MODULE_RECORD_WORDS + 1));
     }
 }
 

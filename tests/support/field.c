@@ -27,7 +27,8 @@ bool field_start(field *r, const char *text) {
     int variables = 0;
     for (int i = 0; i < c->part_count; i++) {
         sdfc_lower(c, &c->parts[i]);
-        if (c->parts[i].program.variable_count > variables) variables = c->parts[i].program.variable_count;
+        if (c->parts[i].program.variable_count > variables)
+            variables = c->parts[i].program.variable_count;
     }
     r->room = calloc((size_t)variables, sizeof *r->room);
     c->values = calloc((size_t)c->expr_count, sizeof *c->values);

@@ -156,7 +156,8 @@ void bake_scene(const char *name, const char *json) {
     snprintf(file, sizeof file, "%s.json", name);
     write_text(file, json);
     if (folder && *folder) {
-        snprintf(kept, sizeof kept, "%s/%016llx.masu", folder, (unsigned long long)hash_of_inputs(name));
+        snprintf(kept, sizeof kept, "%s/%016llx.masu", folder,
+                 (unsigned long long)hash_of_inputs(name));
         if (access(kept, R_OK) == 0 && shell("cp %s %s/%s.masu", kept, scratch, name) == 0) return;
     }
     if (shell("%s/bin/masu-bake %s/%s -o %s/%s.masu --bare --quiet", build_dir(), scratch, file,
@@ -164,8 +165,8 @@ void bake_scene(const char *name, const char *json) {
         fail_msg("%s cannot be baked", file);
     /* Published atomically: the run of another driver may be looking for it. */
     if (*kept)
-        assert_int_equal(shell("cp %s/%s.masu %s.%ld && mv %s.%ld %s", scratch, name, kept, (long)getpid(), kept,
-                               (long)getpid(), kept),
+        assert_int_equal(shell("cp %s/%s.masu %s.%ld && mv %s.%ld %s", scratch, name, kept,
+                               (long)getpid(), kept, (long)getpid(), kept),
                          0);
 }
 

@@ -71,7 +71,8 @@ static uint64_t hash_of(const key *k) {
 static entry *find(const key *k) {
     uint64_t h = hash_of(k);
     entry *e = k->whole ? entries : NULL;
-    while (e && (e->hash != h || e->count != k->count || memcmp(e->key, k->bytes, k->count))) e = e->next;
+    while (e && (e->hash != h || e->count != k->count || memcmp(e->key, k->bytes, k->count)))
+        e = e->next;
     return e;
 }
 
@@ -92,7 +93,8 @@ static void destroy_all(void);
 
 static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t handle) {
     /* Objects of an uncached device are destroyed with it, so they are not cached. */
-    if (!k->whole || (device && !holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device)))) return;
+    if (!k->whole || (device && !holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device))))
+        return;
     entry *e = malloc(sizeof *e + k->count);
     if (!e) abort();
     /* Registered again after kept_forget, which unloads the driver: handlers run in reverse order
@@ -113,7 +115,8 @@ static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t h
  * renderers pass the constants of all modules to each. */
 static bool declares(const entry *module, uint32_t id) {
     enum { OP_DECORATE = 71, SPEC_ID = 1, OP_FUNCTION = 54 };
-    const size_t head = sizeof module->type + sizeof module->device + sizeof(VkShaderModuleCreateFlags) + sizeof(size_t);
+    const size_t head = sizeof module->type + sizeof module->device +
+                        sizeof(VkShaderModuleCreateFlags) + sizeof(size_t);
     for (size_t at = head + 5 * sizeof id; at + 4 * sizeof id <= module->count;) {
         uint32_t word[4];
         memcpy(word, module->key + at, sizeof word);
@@ -161,14 +164,16 @@ static void describe_DescriptorSetLayout(key *k, const VkDescriptorSetLayoutCrea
         ADD(k, b->descriptorType);
         ADD(k, b->stageFlags);
         ADD(k, b->descriptorCount);
-        add_array(k, b->pImmutableSamplers, b->pImmutableSamplers ? b->descriptorCount : 0, sizeof(VkSampler));
+        add_array(k, b->pImmutableSamplers, b->pImmutableSamplers ? b->descriptorCount : 0,
+                  sizeof(VkSampler));
     }
 }
 
 static void describe_PipelineLayout(key *k, const VkPipelineLayoutCreateInfo *info) {
     ADD(k, info->flags);
     add_array(k, info->pSetLayouts, info->setLayoutCount, sizeof *info->pSetLayouts);
-    add_array(k, info->pPushConstantRanges, info->pushConstantRangeCount, sizeof *info->pPushConstantRanges);
+    add_array(k, info->pPushConstantRanges, info->pushConstantRangeCount,
+              sizeof *info->pPushConstantRanges);
 }
 
 static void add_references(key *k, const VkAttachmentReference *first, uint32_t count) {
@@ -243,8 +248,9 @@ static void describe_Graphics(key *k, const VkGraphicsPipelineCreateInfo *info) 
     }
     const VkPipelineMultisampleStateCreateInfo *samples = info->pMultisampleState;
     if (KNOWN(k, samples)) {
-        k->whole &= samples->rasterizationSamples == VK_SAMPLE_COUNT_1_BIT && !samples->sampleShadingEnable &&
-                    !samples->pSampleMask && !samples->alphaToCoverageEnable && !samples->alphaToOneEnable;
+        k->whole &= samples->rasterizationSamples == VK_SAMPLE_COUNT_1_BIT &&
+                    !samples->sampleShadingEnable && !samples->pSampleMask &&
+                    !samples->alphaToCoverageEnable && !samples->alphaToOneEnable;
     }
     const VkPipelineDepthStencilStateCreateInfo *depth = info->pDepthStencilState;
     if (KNOWN(k, depth)) {
@@ -262,7 +268,8 @@ static void describe_Graphics(key *k, const VkGraphicsPipelineCreateInfo *info) 
     }
     const VkPipelineDynamicStateCreateInfo *dynamic = info->pDynamicState;
     if (KNOWN(k, dynamic))
-        add_array(k, dynamic->pDynamicStates, dynamic->dynamicStateCount, sizeof *dynamic->pDynamicStates);
+        add_array(k, dynamic->pDynamicStates, dynamic->dynamicStateCount,
+                  sizeof *dynamic->pDynamicStates);
 }
 
 /* Number of objects that a session must destroy before its device, cached ones included. */
@@ -331,9 +338,11 @@ KEPT_PIPELINES(Compute)
 KEPT_PIPELINES(Graphics)
 
 void REAL(DestroyPipeline)(VkDevice, VkPipeline, const VkAllocationCallbacks *);
-void OURS(DestroyPipeline)(VkDevice device, VkPipeline pipeline, const VkAllocationCallbacks *allocator) {
+void OURS(DestroyPipeline)(VkDevice device, VkPipeline pipeline,
+                           const VkAllocationCallbacks *allocator) {
     held -= pipeline != VK_NULL_HANDLE;
-    if (!holder(TYPE_PIPELINE, HANDLE(pipeline))) REAL(DestroyPipeline)(device, pipeline, allocator);
+    if (!holder(TYPE_PIPELINE, HANDLE(pipeline)))
+        REAL(DestroyPipeline)(device, pipeline, allocator);
 }
 
 /* ---- Objects that are only counted ----------------------------------------------------------- */
@@ -405,14 +414,15 @@ static bool add_next(key *k, const VkBaseInStructure *next) {
     return true;
 }
 
-VkResult REAL(CreateInstance)(const VkInstanceCreateInfo *, const VkAllocationCallbacks *, VkInstance *);
+VkResult REAL(CreateInstance)(const VkInstanceCreateInfo *, const VkAllocationCallbacks *,
+                              VkInstance *);
 void REAL(DestroyInstance)(VkInstance, const VkAllocationCallbacks *);
-VkResult REAL(CreateDevice)(VkPhysicalDevice, const VkDeviceCreateInfo *, const VkAllocationCallbacks *,
-                            VkDevice *);
+VkResult REAL(CreateDevice)(VkPhysicalDevice, const VkDeviceCreateInfo *,
+                            const VkAllocationCallbacks *, VkDevice *);
 void REAL(DestroyDevice)(VkDevice, const VkAllocationCallbacks *);
 
-VkResult OURS(CreateInstance)(const VkInstanceCreateInfo *info, const VkAllocationCallbacks *allocator,
-                              VkInstance *out) {
+VkResult OURS(CreateInstance)(const VkInstanceCreateInfo *info,
+                              const VkAllocationCallbacks *allocator, VkInstance *out) {
     key k = key_of(info->sType, NULL, NULL, allocator);
     k.whole = k.whole && add_next(&k, info->pNext) && info->pApplicationInfo;
     if (k.whole) ADD(&k, info->pApplicationInfo->apiVersion);
@@ -458,10 +468,12 @@ VkResult OURS(CreateDevice)(VkPhysicalDevice physical, const VkDeviceCreateInfo 
 void OURS(DestroyDevice)(VkDevice device, const VkAllocationCallbacks *allocator) {
     open_devices -= device != NULL;
     if (!open_devices && held) {
-        fprintf(stderr, "%lld objects more than were destroyed have been made on the device\n", (long long)held);
+        fprintf(stderr, "%lld objects more than were destroyed have been made on the device\n",
+                (long long)held);
         abort();
     }
-    if (!holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device))) REAL(DestroyDevice)(device, allocator);
+    if (!holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device)))
+        REAL(DestroyDevice)(device, allocator);
 }
 
 /* The newest are first, so no object is destroyed before the ones made from it. If a failed test
@@ -473,14 +485,16 @@ static void destroy_all(void) {
     case TYPE_##Name: REAL(Destroy##Name)(e->device, (Vk##Name)(uintptr_t)e->handle, NULL); break;
         switch (open_devices ? VK_STRUCTURE_TYPE_MAX_ENUM : e->type) {
             KINDS(DESTROY)
-            case TYPE_PIPELINE: REAL(DestroyPipeline)(e->device, (VkPipeline)(uintptr_t)e->handle, NULL); break;
-            case VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO:
-                REAL(DestroyDevice)((VkDevice)(uintptr_t)e->handle, NULL);
-                break;
-            case VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO:
-                REAL(DestroyInstance)((VkInstance)(uintptr_t)e->handle, NULL);
-                break;
-            default: break;
+        case TYPE_PIPELINE:
+            REAL(DestroyPipeline)(e->device, (VkPipeline)(uintptr_t)e->handle, NULL);
+            break;
+        case VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO:
+            REAL(DestroyDevice)((VkDevice)(uintptr_t)e->handle, NULL);
+            break;
+        case VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO:
+            REAL(DestroyInstance)((VkInstance)(uintptr_t)e->handle, NULL);
+            break;
+        default: break;
         }
         free(e);
     }
@@ -521,7 +535,8 @@ static PFN_vkVoidFunction ours(const char *name) {
 
 /* Functions that the driver or loader does not have are not offered here. */
 PFN_vkVoidFunction OURS(GetInstanceProcAddr)(VkInstance instance, const char *name) {
-    PFN_vkVoidFunction real = REAL(GetInstanceProcAddr)(instance, name), our = real ? ours(name) : NULL;
+    PFN_vkVoidFunction real = REAL(GetInstanceProcAddr)(instance, name),
+                       our = real ? ours(name) : NULL;
     return our ? our : real;
 }
 

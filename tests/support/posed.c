@@ -126,7 +126,8 @@ static vec apply(const matrix *m, const struct aiVector3D *v, double one) {
 /* Uses the cofactors of the matrix. */
 static vec turned(const matrix *m, const struct aiVector3D *v) {
     const vec r0 = {m->m[0][0], m->m[0][1], m->m[0][2]}, r1 = {m->m[1][0], m->m[1][1], m->m[1][2]},
-              r2 = {m->m[2][0], m->m[2][1], m->m[2][2]}, n = {(double)v->x, (double)v->y, (double)v->z};
+              r2 = {m->m[2][0], m->m[2][1], m->m[2][2]},
+              n = {(double)v->x, (double)v->y, (double)v->z};
     vec c0 = vec_cross(r1, r2);
     vec out = {vec_dot(c0, n), vec_dot(vec_cross(r2, r0), n), vec_dot(vec_cross(r0, r1), n)};
     return vec_unit(vec_dot(r0, c0) < 0 ? vec_scale(out, -1) : out);
@@ -188,7 +189,8 @@ const posed_vertex *posed_find(const posed *all, const float rest[3], vec positi
         const posed_vertex *v = &all->vertices[i];
         if (v->rest[0] != rest[0] || v->rest[1] != rest[1] || v->rest[2] != rest[2]) continue;
         /* Vertices at one position usually have the same joints: the normal distinguishes them. */
-        double off = length_of(vec_sub(v->position, position)) + 1e-3 * (1 - vec_dot(v->normal, normal));
+        double off =
+            length_of(vec_sub(v->position, position)) + 1e-3 * (1 - vec_dot(v->normal, normal));
         if (off < least) least = off, best = v;
     }
     return best;

@@ -189,8 +189,8 @@ static void barrier(VkCommandBuffer cmd, const bench *b, VkImageLayout from) {
             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
             .image = b->image[i],
             .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                         0, 0, NULL, 0, NULL, IMAGES, images);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, IMAGES, images);
 }
 
 static void run(bench *b, const reflect_job *job, const VkDeviceSize at[IMAGES]) {

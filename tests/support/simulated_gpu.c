@@ -100,16 +100,16 @@ const sim_model sim_models[] = {
      .clock = thermal},
     {"clock_flips", "1040 and 200 MHz alternately, 200 frames each", STEADY, .event = 200, .a = 4,
      .fixed = 0.5, .clock = flips},
-    {"dvfs_steps", "the clock steps up above 90 % busy, down below 70 %; the load steps", .frames = 4000,
-     .event = 300, .load = step, .a = 8, .b = 20, .dvfs = &handheld},
-    {"dvfs_ondemand", "to the highest clock above 90 %, else as low as 87 % busy; the load steps", .frames = 4000,
-     .event = 300, .load = step, .a = 8, .b = 20, .dvfs = &ondemand},
-    {"dvfs_slow", "the same, looking every 12 frames", .frames = 4000, .event = 300, .load = step, .a = 8,
-     .b = 20, .dvfs = &slow_ondemand},
-    {"dvfs_light", "the best rung always fits at the highest clock", .frames = 4000, .event = 300, .load = step,
-     .a = 4, .b = 10, .dvfs = &ondemand},
-    {"dvfs_peak", "a load that no clock carries at scale 1 for 100 frames", .frames = 4000, .event = 400,
-     .load = burst, .a = 9, .b = 40, .period = 300, .dvfs = &handheld},
+    {"dvfs_steps", "the clock steps up above 90 % busy, down below 70 %; the load steps",
+     .frames = 4000, .event = 300, .load = step, .a = 8, .b = 20, .dvfs = &handheld},
+    {"dvfs_ondemand", "to the highest clock above 90 %, else as low as 87 % busy; the load steps",
+     .frames = 4000, .event = 300, .load = step, .a = 8, .b = 20, .dvfs = &ondemand},
+    {"dvfs_slow", "the same, looking every 12 frames", .frames = 4000, .event = 300, .load = step,
+     .a = 8, .b = 20, .dvfs = &slow_ondemand},
+    {"dvfs_light", "the best rung always fits at the highest clock", .frames = 4000, .event = 300,
+     .load = step, .a = 4, .b = 10, .dvfs = &ondemand},
+    {"dvfs_peak", "a load that no clock carries at scale 1 for 100 frames", .frames = 4000,
+     .event = 400, .load = burst, .a = 9, .b = 40, .period = 300, .dvfs = &handheld},
     {"dvfs_fixed", "three rungs and 5 ms of fixed cost", .frames = 4000, .event = 300, .load = step,
      .a = 6, .b = 15, .fixed = 5, .rungs = 3, .dvfs = &ondemand},
     {"latency_1", "the standard model, samples a frame late", .frames = 1800, .event = 600,
@@ -136,18 +136,18 @@ const sim_model sim_models[] = {
      .wall = 1},
     {"lies_huge", "2^64 - 1 for 60 frames", STEADY, .event = 300, .a = 30, .lie = SIM_HUGE,
      .lie_from = 300, .lie_until = 360},
-    {"lies_negative", "negative for 60 frames", STEADY, .event = 300, .a = 30,
-     .lie = SIM_NEGATIVE, .lie_from = 300, .lie_until = 360},
+    {"lies_negative", "negative for 60 frames", STEADY, .event = 300, .a = 30, .lie = SIM_NEGATIVE,
+     .lie_from = 300, .lie_until = 360},
     {"lies_nan", "not a number for 60 frames", STEADY, .event = 300, .a = 30, .lie = SIM_NAN,
      .lie_from = 300, .lie_until = 360},
     {"unit_us", "microseconds for milliseconds; wall clock", STEADY, .event = 300, .load = step,
      .a = 16, .b = 30, .lie = SIM_MICRO, .lie_until = 1500, .wall = 1},
     {"unit_ns", "nanoseconds for milliseconds; wall clock", STEADY, .event = 300, .load = step,
      .a = 16, .b = 30, .lie = SIM_NANO, .lie_until = 1500, .wall = 1},
-    {"unit_s", "seconds for milliseconds; wall clock", STEADY, .event = 300, .load = step,
-     .a = 16, .b = 30, .lie = SIM_SECONDS, .lie_until = 1500, .wall = 1},
-    {"garbage", "any bits for timestamps; wall clock", STEADY, .event = 300, .load = step,
-     .a = 16, .b = 30, .lie = SIM_GARBAGE, .lie_until = 1500, .wall = 1},
+    {"unit_s", "seconds for milliseconds; wall clock", STEADY, .event = 300, .load = step, .a = 16,
+     .b = 30, .lie = SIM_SECONDS, .lie_until = 1500, .wall = 1},
+    {"garbage", "any bits for timestamps; wall clock", STEADY, .event = 300, .load = step, .a = 16,
+     .b = 30, .lie = SIM_GARBAGE, .lie_until = 1500, .wall = 1},
     {"garbage_blind", "any bits in a tenth of the frames, and no wall", STEADY, .event = 300,
      .load = step, .a = 16, .b = 30, .lie = SIM_GARBAGE, .lie_from = 1, .lie_until = 0},
     {"pause", "10 s in one frame, then 200 frames without samples", STEADY, .event = 500, .a = 30,
@@ -197,7 +197,9 @@ static double trace_ms(const sim_trace *t, uint32_t f, double s) {
 }
 
 static double fixed_of(const sim_model *p) { return p->fixed > 0.0 ? p->fixed : 2.0; }
-static double noise_of(const sim_model *p) { return p->noise > 0.0 ? p->noise : p->trace ? 0.0 : 0.04; }
+static double noise_of(const sim_model *p) {
+    return p->noise > 0.0 ? p->noise : p->trace ? 0.0 : 0.04;
+}
 
 /* Without noise. */
 static double mean_ms(const sim_model *p, uint32_t f, double s) {

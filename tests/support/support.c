@@ -120,7 +120,8 @@ void open_device(masu_session *s) {
 
 bool on_gpu(const masu_session *s) {
     VkPhysicalDeviceType type = s->host.properties.deviceType;
-    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU || type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
+           type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
 }
 
 void skip_unless_host_sees_all_memory(void) {
@@ -128,7 +129,8 @@ void skip_unless_host_sees_all_memory(void) {
     bool seen = true;
     open_device(&s);
     for (uint32_t i = 0; i < s.host.memory.memoryTypeCount; i++)
-        seen = seen && s.host.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
+        seen = seen &&
+               s.host.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
     close_session(&s);
     if (!seen) skip();
 }
@@ -155,8 +157,8 @@ void *host_block(uint64_t bytes) {
 
 void make_target(masu_session *s, own_renderer *x, uint32_t width, uint32_t height, int storage) {
     char error[ERROR_SIZE];
-    assert_ok(masu_headless_target_create(&s->host, width, height, VK_FORMAT_R8G8B8A8_UNORM, storage,
-                                          &x->target, error, sizeof error));
+    assert_ok(masu_headless_target_create(&s->host, width, height, VK_FORMAT_R8G8B8A8_UNORM,
+                                          storage, &x->target, error, sizeof error));
 }
 
 void make_own(masu_session *s, own_renderer *x, const masu_desc *desc) {

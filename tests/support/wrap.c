@@ -89,10 +89,14 @@ create_counted_set_layout(VkDevice device, const VkDescriptorSetLayoutCreateInfo
             const VkDescriptorSetLayoutBinding *b = &info->pBindings[i];
             uint32_t n = b->stageFlags & counted_stages[k] ? b->descriptorCount : 0;
             c.stage[k].all += n;
-            if (b->descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER) c.stage[k].uniform_buffers += n;
-            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) c.stage[k].storage_buffers += n;
-            if (b->descriptorType == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) c.stage[k].sampled_images += n;
-            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) c.stage[k].storage_images += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER)
+                c.stage[k].uniform_buffers += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)
+                c.stage[k].storage_buffers += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER)
+                c.stage[k].sampled_images += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE)
+                c.stage[k].storage_images += n;
         }
     }
     VkResult r = create_DescriptorSetLayout(device, info, allocator, out);
@@ -135,7 +139,8 @@ create_counted_pipeline_layout(VkDevice device, const VkPipelineLayoutCreateInfo
     }
     raise(&most->sets, info->setLayoutCount);
     for (uint32_t i = 0; i < info->pushConstantRangeCount; i++)
-        raise(&most->push_bytes, info->pPushConstantRanges[i].offset + info->pPushConstantRanges[i].size);
+        raise(&most->push_bytes,
+              info->pPushConstantRanges[i].offset + info->pPushConstantRanges[i].size);
     return create_PipelineLayout(device, info, allocator, out);
 }
 
@@ -275,7 +280,8 @@ static VKAPI_ATTR void VKAPI_CALL cmd_barrier(VkCommandBuffer cmd, VkPipelineSta
                                 (b & VK_ACCESS_TRANSFER_READ_BIT);
     }
     for (uint32_t i = 0; i < image_count; i++) wrap.last_layout = images[i].newLayout;
-    for (uint32_t i = 0; i < image_count && wrap.on_barrier; i++) wrap.on_barrier(cmd, from, to, &images[i]);
+    for (uint32_t i = 0; i < image_count && wrap.on_barrier; i++)
+        wrap.on_barrier(cmd, from, to, &images[i]);
     real_barrier(cmd, from, to, flags, memory_count, memory, buffer_count, buffers, image_count,
                  images);
 }
@@ -392,7 +398,8 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
     vkGetPhysicalDeviceQueueFamilyProperties(device, n, out);
     for (uint32_t i = 0; out && i < *n; i++) {
         if (wrap.no_compute) out[i].queueFlags &= ~(VkQueueFlags)VK_QUEUE_COMPUTE_BIT;
-        if (wrap.no_timestamps || (wrap.row && !wrap.row->timestamps)) out[i].timestampValidBits = 0;
+        if (wrap.no_timestamps || (wrap.row && !wrap.row->timestamps))
+            out[i].timestampValidBits = 0;
     }
 }
 

@@ -138,7 +138,8 @@ static void skins_that_are_none_are_refused(void **state) {
     REFUSED("skin vertices", 1, SKIN_VERTEX[1].weights[0]++);
     REFUSED("skin vertices", 3, SKIN_VERTEX[3].rest.position[1] = (float)NAN);
     REFUSED("occluders", 0, OF(OCCLUDERS, masu_blob_occluder)[0].mesh = 1,
-            OF(OCCLUDERS, masu_blob_occluder)[0] = (masu_blob_occluder){{-1, -1, 0}, {1, 2, 0}, 1, 0});
+            OF(OCCLUDERS, masu_blob_occluder)[0] =
+                (masu_blob_occluder){{-1, -1, 0}, {1, 2, 0}, 1, 0});
     /* the mesh has a second instance */
     REFUSED("skins", 0, OF(INSTANCES, masu_blob_instance)[1].mesh = 1,
             OF(MODELS, masu_blob_model)[1].like = 1, OF(OCCLUDERS, masu_blob_occluder)[0].mesh = 0);
@@ -311,7 +312,8 @@ static void what_cannot_be_posed_changes_nothing(void **state) {
     assert_int_equal(pose(many, 17), MASU_ERROR_ARGUMENT);
     assert_int_equal(pose(NULL, 1), MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.text, "uses is NULL");
-    assert_int_equal(masu_model_animate(&m, (masu_model){0}, &use, 1, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_animate(&m, (masu_model){0}, &use, 1, &failure),
+                     MASU_ERROR_ARGUMENT);
     use.time = 1.5;
     assert_int_equal(masu_model_set_transform(&m, lid, grown, &failure), MASU_OK);
     assert_int_equal(pose(&use, 1), MASU_ERROR_ARGUMENT); /* 3 times 1.5e38 overflows */
@@ -332,7 +334,8 @@ static void bend_all(const unsigned char *slot, double out[4][3]) {
         memset(out[v], 0, sizeof out[v]);
         for (uint32_t i = 0; i < 4; i++) {
             float rows[12];
-            memcpy(rows, slot + 32 + 48 * (size_t)(skin->first_matrix + from->joints[i]), sizeof rows);
+            memcpy(rows, slot + 32 + 48 * (size_t)(skin->first_matrix + from->joints[i]),
+                   sizeof rows);
             for (uint32_t k = 0; k < 3; k++) {
                 double at = (double)rows[4 * k + 3];
                 for (uint32_t c = 0; c < 3; c++)
@@ -416,7 +419,8 @@ static void a_skin_is_where_its_joints_are(void **state) {
         write_good(&frame, (uint32_t)turn);
         const masu_skin *skin = &m.models.skins.skins[0];
         float (*matrix)[12] = &m.models.skins.now[skin->first_matrix];
-        assert_int_equal(masu_instance_get(&m, masu_instance_find(&m, "lid"), &is, &failure), MASU_OK);
+        assert_int_equal(masu_instance_get(&m, masu_instance_find(&m, "lid"), &is, &failure),
+                         MASU_OK);
         for (uint32_t v = 0; v < 4; v++) {
             const double p[3] = {v & 1 ? 2 : -2, v & 2 ? 2 : -2, 0.5};
             for (uint32_t k = 0; k < 3; k++) {
@@ -425,7 +429,8 @@ static void a_skin_is_where_its_joints_are(void **state) {
             }
             for (uint32_t k = 0; k < 3; k++) {
                 world[turn][v][k] = (double)is.rows[4 * k + 3];
-                for (uint32_t c = 0; c < 3; c++) world[turn][v][k] += (double)is.rows[4 * k + c] * bent[v][c];
+                for (uint32_t c = 0; c < 3; c++)
+                    world[turn][v][k] += (double)is.rows[4 * k + c] * bent[v][c];
                 if (turn && fabs(world[1][v][k] - world[0][v][k]) > 1e-5)
                     fail_msg("vertex %u is at %g, was at %g", v, world[1][v][k], world[0][v][k]);
             }
@@ -530,17 +535,21 @@ static void weights_are_those_of_clips_and_of_the_host(void **state) {
     assert_true(fabs((double)s->weights[0] - (0.25)) <= 1e-6); /* a quarter of the way */
     assert_true(fabs((double)s->weights[1] - (0.5)) <= 0);      /* no clip changes it */
     /* Blended with an equal weight of a clip without this target: half of the value. */
-    const masu_clip_use both[2] = {{.clip = 0, .time = 0.5, .weight = 1.0f}, {.clip = 1, .weight = 1.0f}};
+    const masu_clip_use both[2] = {{.clip = 0, .time = 0.5, .weight = 1.0f},
+                                   {.clip = 1, .weight = 1.0f}};
     assert_int_equal(pose(both, 2), MASU_OK);
     assert_true(fabs((double)s->weights[0] - (0.125)) <= 1e-6);
     memcpy(before, m.bounds.meshes[m.instances.meshes[s->skins[0].instance]], sizeof before);
     assert_int_equal(masu_model_morph_set(&m, lid, "glow", -2.0f, &failure), MASU_OK);
     memcpy(box, m.bounds.meshes[m.instances.meshes[s->skins[0].instance]], sizeof box);
-    assert_true(box[3] - box[0] > before[3] - before[0] + 1.5f || box[5] - box[2] > before[5] - before[2] + 1.5f);
+    assert_true(box[3] - box[0] > before[3] - before[0] + 1.5f ||
+                box[5] - box[2] > before[5] - before[2] + 1.5f);
     assert_int_equal(masu_model_morph_set(&m, lid, "none", 1.0f, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_morph_set(&m, lid, "bend", (float)NAN, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_morph_set(&m, lid, "bend", (float)NAN, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_model_morph_set(&m, lid, NULL, 1.0f, &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_morph_set(&m, (masu_model){0}, "bend", 1.0f, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_morph_set(&m, (masu_model){0}, "bend", 1.0f, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_true(fabs((double)s->weights[1] - (-2)) <= 0);
     /* The slot has both this frame and the previous one. */
     masu_frame_desc frame = {.rung = 0};

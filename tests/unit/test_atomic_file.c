@@ -180,8 +180,9 @@ static void statuses_are_words(void **state) {
 /* Names that resemble a draft's belong to the user. */
 static void what_is_no_draft_stays(void **state) {
     (void)state;
-    static const char *const names[] = {"x.png.part", "x.png.1.part", "x.png.1-.part", "x.png.a-1.part", "x.png.1-2.part2",
-                                        "y.png.1-2.part", "xx.png.1-2.part"};
+    static const char *const names[] = {"x.png.part",     "x.png.1.part",    "x.png.1-.part",
+                                        "x.png.a-1.part", "x.png.1-2.part2", "y.png.1-2.part",
+                                        "xx.png.1-2.part"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) (void)write_text(names[i], "mine");
     assert_int_equal(symlink("x.png.part", in_scratch("x.png.3-0.part")), 0);
     write_x("new");

@@ -166,13 +166,15 @@ static void distances_are_those_of_the_nearest_triangle(void **state) {
     for (int round = 0; round < 50; round++) {
         vec3 t[60][3];
         for (int i = 0; i < 180; i++) {
-            t[i / 3][i % 3] = masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
-                                           round % 5 ? random_between(&random, -1, 1) : 0);
+            t[i / 3][i % 3] =
+                masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                             round % 5 ? random_between(&random, -1, 1) : 0);
         }
         size_t count = (size_t)support_random_in(&random, 1, 60);
         masu_bake_surface s = masu_bake_surface_make((const vec3(*)[3])t, count);
         for (int i = 0; i < 100; i++) {
-            vec3 p = {random_between(&random, -2, 2), random_between(&random, -2, 2), random_between(&random, -2, 2)};
+            vec3 p = {random_between(&random, -2, 2), random_between(&random, -2, 2),
+                      random_between(&random, -2, 2)};
             double got = masu_bake_surface_distance(&s, p, NULL);
             double want = own_distance_all((const vec3(*)[3])t, count, p);
             assert_true(fabs(got - want) < 1e-9);
@@ -187,10 +189,12 @@ static void a_deviation_is_a_bound_and_not_much_more(void **state) {
     for (int round = 0; round < 40; round++) {
         vec3 a[12][3], b[12][3];
         for (int i = 0; i < 36; i++) {
-            a[i / 3][i % 3] = masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
-                                           random_between(&random, -1, 1));
-            b[i / 3][i % 3] = masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
-                                           random_between(&random, -1, 1));
+            a[i / 3][i % 3] =
+                masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                             random_between(&random, -1, 1));
+            b[i / 3][i % 3] =
+                masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                             random_between(&random, -1, 1));
         }
         masu_bake_surface from = masu_bake_surface_make((const vec3(*)[3])a, 12);
         masu_bake_surface to = masu_bake_surface_make((const vec3(*)[3])b, 12);
@@ -340,7 +344,8 @@ static void a_level_is_judged_by_each_of_its_materials(void **state) {
     for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_LODS); i++) {
         masu_blob_lod l = MASU_BAKE_LODS(&c)[i];
         double error = (double)l.error * (1 + 1e-6) + 1e-9;
-        masu_bake_buffer fine = triangles_of(&c, 1, 1), coarse = triangles_of(&c, l.first_primitive + 1, 1);
+        masu_bake_buffer fine = triangles_of(&c, 1, 1),
+                         coarse = triangles_of(&c, l.first_primitive + 1, 1);
         for (size_t k = 0; k < COUNT_OF(fine); k++) {
             double middle = TRIANGLES(fine)[k][0].x / 2.5 + 1;
             if (2 * radius[(int)(middle + 0.5)] * sqrt(2) <= error) continue;
@@ -383,7 +388,8 @@ static bool hides(const masu_bake_content *c, const masu_blob_occluder *o, uint3
     bool hidden = true;
     for (int i = 0; i < 3000 && hidden; i++) {
         vec3 p = point_of_box(&random, o);
-        vec3 d = {random_between(&random, -1, 1), random_between(&random, -1, 1), random_between(&random, -1, 1)};
+        vec3 d = {random_between(&random, -1, 1), random_between(&random, -1, 1),
+                  random_between(&random, -1, 1)};
         if (!masu_bake_normalize(&d)) continue;
         vec3 eye = masu_bake_mad(middle, d, radius * random_between(&random, 1, 5));
         hidden = false;
@@ -428,10 +434,13 @@ static void occluders_lie_inside(void **state) {
         masu_bake_content c = {0};
         masu_bake_occluder_report report = {0};
         s.count = 0;
-        vec3 low = {random_between(&random, -9, 0), random_between(&random, -9, 0), random_between(&random, -9, 0)};
-        vec3 high = {random_between(&random, 1, 9), random_between(&random, 1, 9), random_between(&random, 1, 9)};
+        vec3 low = {random_between(&random, -9, 0), random_between(&random, -9, 0),
+                    random_between(&random, -9, 0)};
+        vec3 high = {random_between(&random, 1, 9), random_between(&random, 1, 9),
+                     random_between(&random, 1, 9)};
         if (round % 4 == 0)
-            torus(&s, random_between(&random, 4, 9), random_between(&random, 1, 3), 24, 10, round % 8);
+            torus(&s, random_between(&random, 4, 9), random_between(&random, 1, 3), 24, 10,
+                  round % 8);
         if (round % 4 == 1) masu_bake_sphere(&c, random_between(&random, 1, 9), 3, 0);
         if (round % 4 ==
             2) { /* a box of many faces inside an open one, so that only the inner one occludes */
@@ -572,7 +581,8 @@ static void merging_shows_the_same_triangles_in_small_meshes(void **state) {
         cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(1, 1, 1), -1);
         add_mesh(&c, &s, "brick");
         masu_blob_instance *n = &MASU_BAKE_INSTANCES(&c)[i];
-        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)random_between(&random, -50, 50);
+        for (int k = 0; k < 3; k++)
+            n->transform[4 * k + 3] = (float)random_between(&random, -50, 50);
         n->transform[5] = (float)random_between(&random, 0.5, 3);
     }
     s.count = 0;
@@ -667,7 +677,8 @@ static void merging_carries_texture_coordinates(void **state) {
                        MASU_BLOB_NONE, MASU_BLOB_NONE);
     for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_INSTANCES); i++) {
         masu_blob_instance *n = &MASU_BAKE_INSTANCES(&c)[i];
-        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)random_between(&random, -50, 50);
+        for (int k = 0; k < 3; k++)
+            n->transform[4 * k + 3] = (float)random_between(&random, -50, 50);
         if (i % 3 == 1) n->transform[0] = -2; /* mirrored: the corner order is reversed */
     }
     masu_bake_buffer before = mapped_corners(&c);

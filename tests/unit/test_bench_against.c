@@ -103,14 +103,16 @@ static void differences_are_those_worked_out_by_hand(void **state) {
     assert_int_equal(a.worst_flip, 2);
     assert_int_equal(a.worst_time, 3);
     make_folder("there", "timestamps");
-    assert_true(masu_against_compare(in_scratch("here"), in_scratch("there"), &a, error, sizeof error));
+    assert_true(
+        masu_against_compare(in_scratch("here"), in_scratch("there"), &a, error, sizeof error));
     assert_true(a.by_timestamps);
     near(a.rungs[2].time_off, 0);
     near(a.rungs[3].time_off, -0.2);
     assert_int_equal(a.worst_time, 3);
     make_folder("there", "wall");
     /* The same folder twice: no differences and no missing rows. */
-    assert_true(masu_against_compare(in_scratch("here"), in_scratch("here"), &a, error, sizeof error));
+    assert_true(
+        masu_against_compare(in_scratch("here"), in_scratch("here"), &a, error, sizeof error));
     assert_int_equal(a.missing, 0);
     for (uint32_t i = 0; i < a.count; i++) {
         near(a.rungs[i].flip_off, 0);
@@ -124,7 +126,8 @@ static void what_is_printed(void **state) {
     (void)state;
     masu_against a;
     char error[8192], text[4096];
-    assert_true(masu_against_compare(in_scratch("here"), in_scratch("there"), &a, error, sizeof error));
+    assert_true(
+        masu_against_compare(in_scratch("here"), in_scratch("there"), &a, error, sizeof error));
     FILE *f = tmpfile();
     assert_non_null(f);
     assert_true(masu_against_print(f, &a, false) > 0);

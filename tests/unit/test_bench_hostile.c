@@ -32,7 +32,8 @@ static void write_in(const char *folder, const char *file, const char *text) {
 static void make_picture(const char *name) {
     static uint8_t rgba[8 * 8 * 4];
     char error[512];
-    if (!masu_image_save_png(in_scratch(name), rgba, 8, 8, 0, error, sizeof error)) fail_msg("%s", error);
+    if (!masu_image_save_png(in_scratch(name), rgba, 8, 8, 0, error, sizeof error))
+        fail_msg("%s", error);
 }
 
 static void write_row(FILE *f, const char *setting, const char *parent) {
@@ -40,7 +41,8 @@ static void write_row(FILE *f, const char *setting, const char *parent) {
     memset(&row, 0, sizeof row);
     snprintf(row.setting, sizeof row.setting, "%s", setting);
     snprintf(row.parent, sizeof row.parent, "%s", parent);
-    snprintf(row.technique, sizeof row.technique, "%s", strcmp(setting, "base") ? "sharpen" : "base");
+    snprintf(row.technique, sizeof row.technique, "%s",
+             strcmp(setting, "base") ? "sharpen" : "base");
     row.ratio = row.gpu_ratio = strcmp(setting, "base") ? 0.5 : 1.0;
     row.flip = strcmp(setting, "base") ? 0.2 : 0.1;
     assert_true(masu_rows_write(f, &row) > 0);
@@ -53,15 +55,17 @@ static void make_folder(const char *name, const char *setting, const char *text)
     snprintf(path, sizeof path, "%s/pictures", name);
     mkdir(in_scratch(path), 0777);
     snprintf(json, sizeof json,
-             "{\"scene\": \"%s\", \"hash\": \"%s\", \"driver\": \"%s\", \"depth\": \"%s\", \"width\": 8, \"height\": 8,"
+             "{\"scene\": \"%s\", \"hash\": \"%s\", \"driver\": \"%s\", \"depth\": \"%s\", "
+             "\"width\": 8, \"height\": 8,"
              " \"time\": 1.0, \"positions\": 4, \"frames\": 8, \"runs\": 2, \"settings\": ["
              "{\"setting\": \"base\", \"knobs\": {}}, {\"setting\": \"%s\", \"knobs\": {}}],"
              " \"dropped\": [{\"setting\": \"%s\", \"why\": \"%s\"}]}",
              text, text, text, text, setting, text, text);
     write_in(name, "sweep.json", json);
     snprintf(json, sizeof json,
-             "[{\"cpu\": \"%s\", \"threads\": 2, \"driver\": \"%s\", \"masu\": \"%s\", \"date\": \"%s\"}]", text, text,
-             text, text);
+             "[{\"cpu\": \"%s\", \"threads\": 2, \"driver\": \"%s\", \"masu\": \"%s\", \"date\": "
+             "\"%s\"}]",
+             text, text, text, text);
     write_in(name, "machine.json", json);
     snprintf(path, sizeof path, "%s/results.csv", name);
     FILE *f = fopen(in_scratch(path), "w");
@@ -110,14 +114,16 @@ static void an_image_fits_its_bytes(void **state) {
     (void)state;
     static uint8_t rgba[256 * 256 * 4];
     uint32_t seed = 1;
-    for (size_t i = 0; i < sizeof rgba; i++) rgba[i] = (uint8_t)((seed = seed * 1664525u + 1013904223u) >> 24);
+    for (size_t i = 0; i < sizeof rgba; i++)
+        rgba[i] = (uint8_t)((seed = seed * 1664525u + 1013904223u) >> 24);
     char *text = NULL;
     size_t bytes = 0;
     FILE *f = open_memstream(&text, &bytes);
     assert_true(masu_page_image(f, rgba, 256, 256, 6000, "shot", "<a \"b\">"));
     assert_int_equal(fclose(f), 0);
     assert_in_range(bytes, 1000, 6000 * 4 / 3 + 200);
-    assert_non_null(strstr(text, "alt=\"&lt;a &quot;b&quot;&gt;\" src=\"data:image/jpeg;base64,/9j/"));
+    assert_non_null(
+        strstr(text, "alt=\"&lt;a &quot;b&quot;&gt;\" src=\"data:image/jpeg;base64,/9j/"));
     free(text);
 }
 
@@ -196,13 +202,15 @@ static void a_quoted_text_is_one_string_of_gnuplot(void **state) {
     masu_gnuplot_quote(f, "a'; system \"touch STRUCK\"\nsystem 'touch STRUCK' #`touch STRUCK`");
     fprintf(f, "\n$d << EOD\n1 2 ");
     masu_gnuplot_label(f, "\"`touch STRUCK`\nEOD\nsystem 'touch STRUCK'");
-    fprintf(f, "\nEOD\nset terminal svg\nset output 'out.svg'\nplot $d using 1:2:3 with labels noenhanced\n");
+    fprintf(f, "\nEOD\nset terminal svg\nset output 'out.svg'\nplot $d using 1:2:3 with labels "
+               "noenhanced\n");
     assert_int_equal(fclose(f), 0);
     masu_gnuplot_end end = masu_gnuplot_run(scratch, text, bytes);
     assert_int_not_equal(end, MASU_GNUPLOT_FAILED);
     if (end == MASU_GNUPLOT_DRAWN) assert_true(is_in_scratch("out.svg"));
     assert_false(is_in_scratch("STRUCK"));
-    assert_non_null(strstr(text, "x = 'a''; system \"touch STRUCK\" system ''touch STRUCK'' #`touch STRUCK`'\n"));
+    assert_non_null(strstr(
+        text, "x = 'a''; system \"touch STRUCK\" system ''touch STRUCK'' #`touch STRUCK`'\n"));
     assert_non_null(strstr(text, "1 2 \"'`touch STRUCK` EOD system 'touch STRUCK'\"\n"));
     free(text);
 }
@@ -217,8 +225,8 @@ static bool merge(const char *part, const char *out, char *error, size_t error_s
 
 static void a_setting_does_not_lead_out_of_the_folder(void **state) {
     (void)state;
-    static const char *const names[] = {"../../ESCAPED", "/tmp/ESCAPED", ".ESCAPED", "a/ESCAPED", "a\\ESCAPED",
-                                        "ESCAPED`x`"};
+    static const char *const names[] = {"../../ESCAPED", "/tmp/ESCAPED", ".ESCAPED",
+                                        "a/ESCAPED",     "a\\ESCAPED",   "ESCAPED`x`"};
     char error[1024], path[256];
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         snprintf(path, sizeof path, "out%zu", i);
@@ -260,7 +268,8 @@ static void a_size_that_is_none_is_refused(void **state) {
     make_folder("size", "scale=0.5", "x");
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         snprintf(json, sizeof json,
-                 "{\"width\": %s, \"height\": 65536, \"settings\": [{\"setting\": \"base\"}]}", sizes[i]);
+                 "{\"width\": %s, \"height\": 65536, \"settings\": [{\"setting\": \"base\"}]}",
+                 sizes[i]);
         write_in("size", "sweep.json", json);
         snprintf(path, sizeof path, "%s", in_scratch("size"));
         assert_false(masu_report_rungs(path, &list, error, sizeof error));

@@ -101,10 +101,10 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     /* The remaining bundles: the cheap one at 0.4 has fast EASU and no RCAS, the lean one is
      * temporal. */
     assert_true(find(count, "scale=0.4+easu=fast+sharpen=off") < count);
-    check_dropped(
-        "scale=0.75+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+shadow_refresh=2-4-8-8+"
-        "specular_reuse_taps=4+specular_filter_taps=6",
-        count, "");
+    check_dropped("scale=0.75+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+"
+                  "shadow_refresh=2-4-8-8+"
+                  "specular_reuse_taps=4+specular_filter_taps=6",
+                  count, "");
     for (uint32_t i = 0; i < count; i++) {
         if (settings[i].dropped[0]) continue;
         const masu_rung *r = &settings[i].rung;

@@ -35,7 +35,9 @@ static grid *make(void) {
 }
 
 static uint32_t probe_of(uint32_t word) { return word & MASU_BOUNCE_PROBE; }
-static uint32_t set_of(uint32_t word) { return word >> MASU_BOUNCE_SET_SHIFT & (MASU_BOUNCE_SETS - 1u); }
+static uint32_t set_of(uint32_t word) {
+    return word >> MASU_BOUNCE_SET_SHIFT & (MASU_BOUNCE_SETS - 1u);
+}
 static uint32_t count_of(uint32_t word) { return word >> MASU_BOUNCE_COUNT_SHIFT; }
 
 /* Runs the frames of a whole round; `seen` counts how often each probe was selected. */
@@ -127,7 +129,8 @@ static void only_time_keeps_a_field_of_parameters_awake(void **state) {
         static masu_instances instances;
         static masu_materials materials;
         grid *g = make();
-        plan.needs = (masu_needs){.sdf = 1, .dynamic = 1, .timed = timed, .bounce = 1, .bounce_sdf = 1};
+        plan.needs =
+            (masu_needs){.sdf = 1, .dynamic = 1, .timed = timed, .bounce = 1, .bounce_sdf = 1};
         f.plan = &plan;
         f.u.sdf_params[0][0] = 0.25f;
         masu_bounce_follow(&g->b, &lights, &instances, &materials, &f);

@@ -156,14 +156,19 @@ static void a_leaning_coat_makes_no_light(void **state) {
     const int rings = 160, turns = 160;
     double low[2] = {9, 9}, high[2] = {0, 0}; /* dielectrics, metals */
     for (int i = 0; i < 24; i++) {
-        brdf_surface s = {.albedo = WHITE, .roughness = i & 1 ? 0.4 : 1, .metallic = i & 2 ? 1 : 0, .specular = 0.5,
-                          .coat = i & 4 ? 1 : 0.5, .coat_roughness = 0.4};
+        brdf_surface s = {.albedo = WHITE,
+                          .roughness = i & 1 ? 0.4 : 1,
+                          .metallic = i & 2 ? 1 : 0,
+                          .specular = 0.5,
+                          .coat = i & 4 ? 1 : 0.5,
+                          .coat_roughness = 0.4};
         double lean = cosine_of(20), angle = i / 8 * 30.0, all[3] = {0, 0, 0};
         const double v[3] = {sqrt(1 - cosine_of(angle) * cosine_of(angle)), 0, cosine_of(angle)};
         const double n[3] = {(i & 8 ? -1 : 1) * sqrt(1 - lean * lean), 0, lean};
         for (int r = 0; r < rings; r++) {
             for (int t = 0; t < turns; t++) {
-                double z = 2 * (r + 0.5) / rings - 1, phi = 6.283185307179586 * (t + 0.5) / turns, f[3];
+                double z = 2 * (r + 0.5) / rings - 1, phi = 6.283185307179586 * (t + 0.5) / turns,
+                       f[3];
                 const double l[3] = {sqrt(1 - z * z) * cos(phi), sqrt(1 - z * z) * sin(phi), z};
                 /* times pi; dl is 4 pi / (rings * directions) */
                 brdf_over(masu_split_sum, &s, n, v, l, f);
@@ -173,7 +178,8 @@ static void a_leaning_coat_makes_no_light(void **state) {
         low[i >> 1 & 1] = fmin(low[i >> 1 & 1], all[0]);
         high[i >> 1 & 1] = fmax(high[i >> 1 & 1], all[0]);
     }
-    print_message("  dielectrics %.4f to %.4f, metals %.4f to %.4f\n", low[0], high[0], low[1], high[1]);
+    print_message("  dielectrics %.4f to %.4f, metals %.4f to %.4f\n", low[0], high[0], low[1],
+                  high[1]);
     assert_true(low[0] > 0.97 && high[0] < 1.001);
     /* the table has no light that leaves the metal at a steep angle */
     assert_true(low[1] > 0.82 && high[1] < 1.025);

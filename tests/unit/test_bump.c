@@ -82,7 +82,8 @@ static void texels_say_what_they_are(void **state) {
     for (int kind = 0; kind < 4; kind++) {
         for (uint32_t y = 0; y < SIDE; y++) {
             for (uint32_t x = 0; x < SIDE; x++) {
-                double n = support_random_in(&seed, 0, 20), u = sin(x * 0.4) * 0.6, v = cos(y * 0.3) * 0.6;
+                double n = support_random_in(&seed, 0, 20), u = sin(x * 0.4) * 0.6,
+                       v = cos(y * 0.3) * 0.6;
                 double z = sqrt(1 - u * u - v * v), grey = 40 + 3 * (x % 40u);
                 if (kind == 0) set(x, y, grey, grey + n, grey + n / 2); /* like JPEG noise */
                 if (kind == 1) set(x, y, 128 + 127 * u, 128 + 127 * v, 128 + 127 * z);
@@ -91,7 +92,8 @@ static void texels_say_what_they_are(void **state) {
             }
         }
         bool heights = masu_bump_is_height(picture, SIDE, SIDE, MASU_BAKE_RELIEF_NAMED_HEIGHTS);
-        bool named_normals = masu_bump_is_height(picture, SIDE, SIDE, MASU_BAKE_RELIEF_NAMED_NORMALS);
+        bool named_normals =
+            masu_bump_is_height(picture, SIDE, SIDE, MASU_BAKE_RELIEF_NAMED_NORMALS);
         assert_int_equal(heights, kind != 1);
         assert_int_equal(named_normals, kind == 0 || kind == 3);
         assert_false(masu_bump_is_height(picture, SIDE, SIDE, MASU_BAKE_RELIEF_NORMALS));

@@ -127,7 +127,8 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
             c.forward[k] = (float)random_between(&random, -3.0, 3.0);
             c.up[k] = (float)random_between(&random, -3.0, 3.0);
         }
-        for (int k = 0; k < 2 && n % 2; k++) c.jitter[k] = (float)random_between(&random, -1.0, 1.0);
+        for (int k = 0; k < 2 && n % 2; k++)
+            c.jitter[k] = (float)random_between(&random, -1.0, 1.0);
         double left = 2.0 * (double)c.jitter[0] / 1280.0, above = 2.0 * (double)c.jitter[1] / 720.0;
         double forward[3], wish[3], right[3], up[3], clip[4];
         direction_of(c.forward, forward);
@@ -142,7 +143,8 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
             c.left = (float)x, c.right = (float)(x + random_between(&random, 0.5, 3.0));
             c.bottom = (float)y, c.top = (float)(y + random_between(&random, 0.5, 3.0));
             c.fov_y = n % 2 ? 0.0f : 9.0f;
-            tan_x = 0.5 * ((double)c.right - (double)c.left), tan_y = 0.5 * ((double)c.top - (double)c.bottom);
+            tan_x = 0.5 * ((double)c.right - (double)c.left),
+            tan_y = 0.5 * ((double)c.top - (double)c.bottom);
             left += 0.5 * ((double)c.right + (double)c.left) / tan_x;
             above -= 0.5 * ((double)c.top + (double)c.bottom) / tan_y;
         }
@@ -159,7 +161,8 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
             project(&u, rel, clip);
             assert_near(clip[3], z, 1e-5 * z + 1e-5);
             assert_near(clip[0] / clip[3], x - left, 2e-5 * (1 + fabs(left)));
-            assert_near(clip[1] / clip[3], -y - above, 2e-5 * (1 + fabs(above))); /* down is positive */
+            assert_near(clip[1] / clip[3], -y - above,
+                        2e-5 * (1 + fabs(above))); /* down is positive */
             assert_near(clip[2] / clip[3], (double)c.near_distance / z, 1e-5);
         }
         assert_near((double)u.jitter[0], left, 2e-6 * (1 + fabs(left)));
@@ -243,13 +246,19 @@ static void the_eye_keeps_its_precision_in_two_floats(void **state) {
  * world may differ. */
 static void a_past_is_told_what_has_moved(void **state) {
     (void)state;
-    enum { NOTHING = 0, MOVES = MASU_TEMPORAL_MOVES, BOTH = MASU_TEMPORAL_MOVES | MASU_TEMPORAL_CHANGES };
+    enum {
+        NOTHING = 0,
+        MOVES = MASU_TEMPORAL_MOVES,
+        BOTH = MASU_TEMPORAL_MOVES | MASU_TEMPORAL_CHANGES
+    };
     static const struct {
         double to;
         float right, fov_y, jitter;
         uint32_t told;
-    } frames[] = {{0, 0, 1, 0, NOTHING}, {0, 0, 1, 0, NOTHING},     {0, 0.1f, 1, 0, MOVES},    {0, 0.1f, 1, 0, NOTHING},
-                  {0, 0.1f, 1.1f, 0, MOVES}, {0, 0.1f, 1.1f, 0.3f, NOTHING}, {0.5, 0.1f, 1.1f, 0.3f, BOTH}, {0.5, 0.1f, 1.1f, 0, NOTHING}};
+    } frames[] = {{0, 0, 1, 0, NOTHING},         {0, 0, 1, 0, NOTHING},
+                  {0, 0.1f, 1, 0, MOVES},        {0, 0.1f, 1, 0, NOTHING},
+                  {0, 0.1f, 1.1f, 0, MOVES},     {0, 0.1f, 1.1f, 0.3f, NOTHING},
+                  {0.5, 0.1f, 1.1f, 0.3f, BOTH}, {0.5, 0.1f, 1.1f, 0, NOTHING}};
     masu_rung rung = {.scale = 1.0f, .temporal = MASU_ON};
     make_renderer_with(SUPPORT_RASTER, 0, &rung, 1);
     masu_light light = good_light();
@@ -368,7 +377,8 @@ static void a_bad_window_is_named(void **state) {
     BAD_CAMERA("camera.left", WINDOW(-101, 1, -1, 1));
     BAD_CAMERA("camera.top", WINDOW(-1, 1, -1, 100.1f));
     BAD_CAMERA("camera.right", WINDOW(99.95f, 100, -1, 1));
-    if (strcmp(detail.text, "camera.right is 100, needed is camera.left (99.95) + 0.0976562 or more"))
+    if (strcmp(detail.text,
+               "camera.right is 100, needed is camera.left (99.95) + 0.0976562 or more"))
         fail_msg("\"%s\"", detail.text);
 }
 

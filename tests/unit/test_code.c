@@ -29,7 +29,8 @@ static masu_result bound(void) {
 
 static void assert_refused(const char *what, const char *why) {
     assert_int_equal(bound(), MASU_ERROR_SCENE);
-    if (strcmp(detail.what, what) != 0 || !strstr(detail.text, why)) fail_msg("\"%s\" is not %s, %s", detail.text, what, why);
+    if (strcmp(detail.what, what) != 0 || !strstr(detail.text, why))
+        fail_msg("\"%s\" is not %s, %s", detail.text, what, why);
 }
 
 static uint32_t *words_of(enum masu_blob_kind kind) { return support_blob_find(&blob, kind); }
@@ -41,7 +42,8 @@ static void other_counts_than_the_code_was_compiled_for_are_refused(void **state
     support_blob_write(&blob, SUPPORT_ALL);
     masu_blob_sdf *field = support_blob_find(&blob, MASU_BLOB_SDF);
     field->part_count = 300;
-    assert_refused("march SPIR-V", "parts 0001, slots 00003, words 0, raster, in place, moves', the blob has 'code 11, parts 0300");
+    assert_refused("march SPIR-V", "parts 0001, slots 00003, words 0, raster, in place, moves', "
+                                   "the blob has 'code 11, parts 0300");
     support_blob_recode(&blob);
     assert_int_equal(bound(), MASU_OK);
     field->part_count = 1;
@@ -70,7 +72,8 @@ static void code_of_one_pass_as_that_of_another_is_refused(void **state) {
     support_blob_row(&blob, MASU_BLOB_CONE8_SPIRV)->kind = MASU_BLOB_KIND_COUNT;
     support_blob_row(&blob, MASU_BLOB_CONE4_SPIRV)->kind = MASU_BLOB_CONE8_SPIRV;
     for (uint32_t i = 0; i < ((masu_blob_header *)(void *)blob.bytes)->section_count; i++) {
-        masu_blob_section *rows = (masu_blob_section *)(void *)(blob.bytes + sizeof(masu_blob_header));
+        masu_blob_section *rows =
+            (masu_blob_section *)(void *)(blob.bytes + sizeof(masu_blob_header));
         if (rows[i].kind == MASU_BLOB_KIND_COUNT) rows[i].kind = MASU_BLOB_CONE4_SPIRV;
     }
     assert_refused("cone8 SPIR-V", "made for 'code 15");
@@ -80,7 +83,9 @@ static void code_that_does_not_say_what_for_is_refused(void **state) {
     (void)state;
     support_blob_write(&blob, SUPPORT_ALL);
     uint32_t *words = words_of(MASU_BLOB_MARCH_SPIRV);
-    uint64_t at = masu_module_record_place(words, support_blob_row(&blob, MASU_BLOB_MARCH_SPIRV)->count) - MASU_MODULE_RECORD_WORDS;
+    uint64_t at =
+        masu_module_record_place(words, support_blob_row(&blob, MASU_BLOB_MARCH_SPIRV)->count) -
+        MASU_MODULE_RECORD_WORDS;
     words[at + 2] = 0x0A0A0A0Au; /* none of its lines reaches a message */
     assert_refused("march SPIR-V", "made for '?'");
     assert_null(strchr(detail.text, '\n'));
@@ -170,16 +175,49 @@ static void a_module_that_is_cut_anywhere_is_refused(void **state) {
 /* A module with one resource, of this class, in set and binding. */
 static uint32_t resource_module(uint32_t *words, uint32_t set, uint32_t binding, uint32_t class) {
     static const uint32_t storage[] = {0, 2, 12, 0, 0, 9};
-    const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 16, 0, OP(2, 17), 1, OP(3, 14), 0, 1, OP(5, 15), 5, 1, 0x6E69616Du, 0,
-                             OP(6, 16), 1, 17, 8, 8, 1};
-    const uint32_t globals[] = {OP(5, 72), 8, 0, 35, 24,                            /* Offset of the block's member */
-                                OP(3, 22), 5, 32, OP(4, 23), 6, 5, 4, OP(9, 25), 7, 5, 1, 0, 0, 0, class == MASU_MODULE_SAMPLED ? 1u : 2u, 0,
-                                OP(3, 30), 8, 5,
-                                OP(3, 27), 9, 7, OP(4, 32), 10, storage[class],
-                                class == MASU_MODULE_SAMPLED ? 9u : class == MASU_MODULE_IMAGE ? 7u : 8u,
-                                OP(4, 59), 10, 11, storage[class]};
+    const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 16,        0, OP(2, 17), 1,
+                             OP(3, 14),   0,           1, OP(5, 15), 5, 1,         0x6E69616Du,
+                             0,           OP(6, 16),   1, 17,        8, 8,         1};
+    const uint32_t globals[] = {OP(5, 72),
+                                8,
+                                0,
+                                35,
+                                24, /* Offset of the block's member */
+                                OP(3, 22),
+                                5,
+                                32,
+                                OP(4, 23),
+                                6,
+                                5,
+                                4,
+                                OP(9, 25),
+                                7,
+                                5,
+                                1,
+                                0,
+                                0,
+                                0,
+                                class == MASU_MODULE_SAMPLED ? 1u : 2u,
+                                0,
+                                OP(3, 30),
+                                8,
+                                5,
+                                OP(3, 27),
+                                9,
+                                7,
+                                OP(4, 32),
+                                10,
+                                storage[class],
+                                class == MASU_MODULE_SAMPLED ? 9u
+                                : class == MASU_MODULE_IMAGE ? 7u
+                                                             : 8u,
+                                OP(4, 59),
+                                10,
+                                11,
+                                storage[class]};
     const uint32_t bind[] = {OP(4, 71), 11, 34, set, OP(4, 71), 11, 33, binding};
-    const uint32_t tail[] = {OP(2, 19), 2, OP(3, 33), 3, 2, OP(5, 54), 2, 1, 0, 3, OP(2, 248), 4, OP(1, 253), OP(1, 56)};
+    const uint32_t tail[] = {OP(2, 19), 2, OP(3, 33), 3,          2, OP(5, 54),  2,
+                             1,         0, 3,         OP(2, 248), 4, OP(1, 253), OP(1, 56)};
     uint32_t n = COUNT(head);
     memcpy(words, head, sizeof head);
     if (class <= MASU_MODULE_IMAGE) {
@@ -225,11 +263,13 @@ static void a_resource_that_the_pass_does_not_bind_is_refused(void **state) {
             for (uint32_t class = MASU_MODULE_UNIFORMS; class <= MASU_MODULE_IMAGE; class++) {
                 uint32_t words[160], count = resource_module(words, set, binding, class);
                 uint32_t place = (uint32_t)masu_module_record_place(words, count);
-                memmove(words + place + MASU_MODULE_RECORD_WORDS, words + place, 4 * (count - place));
+                memmove(words + place + MASU_MODULE_RECORD_WORDS, words + place,
+                        4 * (count - place));
                 words[place] = MASU_MODULE_RECORD_FIRST;
                 support_blob_write(&blob, SUPPORT_ALL);
                 masu_blob_section *march = support_blob_row(&blob, MASU_BLOB_MARCH_SPIRV);
-                memcpy(words + place, words_of(MASU_BLOB_MARCH_SPIRV) + 21, 4 * MASU_MODULE_RECORD_WORDS);
+                memcpy(words + place, words_of(MASU_BLOB_MARCH_SPIRV) + 21,
+                       4 * MASU_MODULE_RECORD_WORDS);
                 /* After everything else, where the buffer has room. */
                 blob.size = (blob.size + 15) / 16 * 16;
                 march->offset = blob.size;
@@ -259,7 +299,8 @@ static void a_resource_that_the_pass_does_not_bind_is_refused(void **state) {
  * reads only the module (tests/support/bind.c has an unreadable page after it). */
 static void any_word_gives_an_answer(void **state) {
     (void)state;
-    static const uint32_t values[] = {0, 1, 2, 5, 0xFFFF, 0x10000, 0x20011, 0x5000F, 0x1000F, 0x80000000, 0xFFFFFFFF, 0x0001003B};
+    static const uint32_t values[] = {
+        0, 1, 2, 5, 0xFFFF, 0x10000, 0x20011, 0x5000F, 0x1000F, 0x80000000, 0xFFFFFFFF, 0x0001003B};
     support_blob_write(&blob, SUPPORT_SDF);
     uint64_t count = support_blob_row(&blob, MASU_BLOB_MARCH_SPIRV)->count;
     uint32_t refused = 0, tried = 0;

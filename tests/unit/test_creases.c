@@ -18,7 +18,8 @@ static uint32_t corners[CORNERS];
 static int16_t normals[CORNERS][2];
 
 static void make(uint32_t vertices, uint32_t count) {
-    masu_bake_triangles t = {.positions = positions, .vertex_count = vertices, .indices = corners, .index_count = count};
+    masu_bake_triangles t = {
+        .positions = positions, .vertex_count = vertices, .indices = corners, .index_count = count};
     memset(normals, 0, sizeof normals);
     masu_bake_creased_normals(&t, corners, count, normals);
 }
@@ -26,12 +27,15 @@ static void make(uint32_t vertices, uint32_t count) {
 static void expect(uint32_t corner, double x, double y, double z) {
     masu_bake_vec3 n = masu_bake_decode_normal(normals[corner]), want = {x, y, z};
     masu_bake_normalize(&want);
-    if (!(masu_bake_dot(n, want) > 1 - 1e-8)) fail_msg("corner %u: %g %g %g, not %g %g %g", corner, n.x, n.y, n.z, want.x, want.y, want.z);
+    if (!(masu_bake_dot(n, want) > 1 - 1e-8))
+        fail_msg("corner %u: %g %g %g, not %g %g %g", corner, n.x, n.y, n.z, want.x, want.y,
+                 want.z);
 }
 
 static void face_normal(uint32_t triangle, double out[3]) {
     masu_bake_vec3 p[3];
-    for (uint32_t k = 0; k < 3; k++) p[k] = masu_bake_v3f(positions + 3 * corners[3 * triangle + k]);
+    for (uint32_t k = 0; k < 3; k++)
+        p[k] = masu_bake_v3f(positions + 3 * corners[3 * triangle + k]);
     masu_bake_vec3 n = masu_bake_cross(masu_bake_sub(p[1], p[0]), masu_bake_sub(p[2], p[0]));
     masu_bake_normalize(&n);
     out[0] = n.x, out[1] = n.y, out[2] = n.z;
@@ -40,8 +44,10 @@ static void face_normal(uint32_t triangle, double out[3]) {
 /* A cube of eight vertices, or of 36. Its sides are flat. */
 static void a_cube_is_flat(void **state) {
     (void)state;
-    static const uint32_t quads[6][4] = {{0, 1, 3, 2}, {2, 3, 5, 4}, {4, 5, 7, 6}, {6, 7, 1, 0}, {1, 7, 5, 3}, {6, 0, 2, 4}};
-    static const float eight[8][3] = {{-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, -1}, {1, -1, -1}};
+    static const uint32_t quads[6][4] = {{0, 1, 3, 2}, {2, 3, 5, 4}, {4, 5, 7, 6},
+                                         {6, 7, 1, 0}, {1, 7, 5, 3}, {6, 0, 2, 4}};
+    static const float eight[8][3] = {{-1, -1, 1}, {1, -1, 1}, {-1, 1, 1},   {1, 1, 1},
+                                      {-1, 1, -1}, {1, 1, -1}, {-1, -1, -1}, {1, -1, -1}};
     for (int shared = 0; shared < 2; shared++) {
         uint32_t n = 0;
         if (shared) memcpy(positions, eight, sizeof eight);
@@ -69,7 +75,8 @@ static void a_tube_is_round(void **state) {
         uint32_t n = 0;
         for (uint32_t i = 0; i < 2 * sides; i++) {
             double turn = 6.283185307179586 * (i / 2) / sides;
-            positions[3 * i] = (float)cos(turn), positions[3 * i + 1] = (float)sin(turn), positions[3 * i + 2] = (float)(i % 2);
+            positions[3 * i] = (float)cos(turn), positions[3 * i + 1] = (float)sin(turn),
+                          positions[3 * i + 2] = (float)(i % 2);
         }
         for (uint32_t i = 0; i < sides; i++) {
             uint32_t a = 2 * i, b = 2 * ((i + 1) % sides), side[6] = {a, b, b + 1, a, b + 1, a + 1};
@@ -99,7 +106,8 @@ static void whatever_comes(void **state) {
     positions[0] = positions[1] = 0, positions[2] = 1;
     for (uint32_t i = 0; i < blades; i++) {
         double turn = 6.283185307179586 * i / blades;
-        positions[3 * i + 3] = (float)cos(turn), positions[3 * i + 4] = (float)sin(turn), positions[3 * i + 5] = 0;
+        positions[3 * i + 3] = (float)cos(turn), positions[3 * i + 4] = (float)sin(turn),
+                          positions[3 * i + 5] = 0;
         corners[3 * i] = 0, corners[3 * i + 1] = 1 + i, corners[3 * i + 2] = 1 + (i + 1) % blades;
     }
     make(1 + blades, 3 * blades);
@@ -117,7 +125,8 @@ static void whatever_comes(void **state) {
     make(6, 6);
     for (uint32_t i = 0; i < 2; i++) {
         masu_bake_vec3 n = masu_bake_decode_normal(normals[3 * i]);
-        if (!(fabs(n.x) < 1e-3 && n.y < -0.999)) fail_msg("the ridge is cut: %g %g %g", n.x, n.y, n.z);
+        if (!(fabs(n.x) < 1e-3 && n.y < -0.999))
+            fail_msg("the ridge is cut: %g %g %g", n.x, n.y, n.z);
     }
 }
 

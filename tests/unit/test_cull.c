@@ -95,8 +95,10 @@ static void random_camera(double span, masu_cull_view *view, exact_view *exact) 
         memset(forward, 0, sizeof forward);
         forward[support_random(&seed) % 3] = sign();
     }
-    camera(eye, forward, fovs[support_random(&seed) % COUNT(fovs)], random_between(&seed, 0.1, 10.0),
-           support_random(&seed) % 2 ? 0.1 : exp(random_between(&seed, log(1e-9), log(1e9))), view, exact);
+    camera(eye, forward, fovs[support_random(&seed) % COUNT(fovs)],
+           random_between(&seed, 0.1, 10.0),
+           support_random(&seed) % 2 ? 0.1 : exp(random_between(&seed, log(1e-9), log(1e9))), view,
+           exact);
 }
 
 /* The six planes of the region |axis[i].(x - center)| <= half[i]; axes need not be unit vectors. */
@@ -138,7 +140,8 @@ static masu_cull_box random_box(double span) {
     uint64_t kind = support_random(&seed) % 8;
     double size = exp(random_between(&seed, log(1e-6), log(4 * span)));
     for (uint32_t k = 0; k < 3; k++) {
-        b.center[k] = (float)(kind == 1 ? magnitude(1e-3, 1e7) : random_between(&seed, -span, span));
+        b.center[k] =
+            (float)(kind == 1 ? magnitude(1e-3, 1e7) : random_between(&seed, -span, span));
         b.half[k] = (float)(kind == 2 ? 0.0 : kind == 3 ? fabs(magnitude(1e-6, 1e6))
                                                         : random_between(&seed, 0.0, size));
         if (kind == 0 && support_random(&seed) % 2) {
@@ -363,7 +366,8 @@ static void a_group_is_kept_where_its_only_box_is(void **state) {
 
 static void planes_that_are_no_planes_reject_nothing(void **state) {
     (void)state;
-    static const double normals[][3] = {{0, 0, 0}, {(double)NAN, 0, 1}, {(double)INFINITY, 0, 0}, {0, 0, 0}};
+    static const double normals[][3] = {
+        {0, 0, 0}, {(double)NAN, 0, 1}, {(double)INFINITY, 0, 0}, {0, 0, 0}};
     masu_cull_view view = {.count = 0};
     for (size_t i = 0; i < COUNT(normals); i++) masu_cull_add_plane(&view, normals[i], -1.0);
     masu_cull_add_plane(&view, (const double[3]){1, 0, 0}, (double)NAN);
@@ -406,8 +410,10 @@ static void a_placed_box_holds_what_floats_make_of_its_points(void **state) {
         for (uint32_t corner = 0; corner < 9; corner++) {
             float p[3];
             for (uint32_t k = 0; k < 3; k++) {
-                p[k] = corner == 8 ? low[k] + (high[k] - low[k]) * (float)random_between(&seed, 0.0, 0.999)
-                                   : corner >> k & 1 ? high[k] : low[k];
+                p[k] = corner == 8
+                           ? low[k] + (high[k] - low[k]) * (float)random_between(&seed, 0.0, 0.999)
+                       : corner >> k & 1 ? high[k]
+                                         : low[k];
             }
             for (uint32_t i = 0; i < 3; i++) {
                 const float *row = rows + 4 * i;
@@ -461,7 +467,8 @@ static void build_town(field *f, uint64_t number) {
     seed = number;
     for (uint32_t i = 0; i < FIELD; i++) {
         for (uint32_t k = 0; k < 3; k++) {
-            boxes[i].center[k] = (float)random_between(&seed, k == 1 ? 0.0 : -500.0, k == 1 ? 60.0 : 500.0);
+            boxes[i].center[k] =
+                (float)random_between(&seed, k == 1 ? 0.0 : -500.0, k == 1 ? 60.0 : 500.0);
             boxes[i].half[k] = (float)exp(random_between(&seed, log(0.2), log(8.0)));
         }
     }

@@ -332,12 +332,14 @@ static void output_follows_from_target_and_scene(void **state) {
         VkFormat wanted = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_A2B10G10R10_UNORM_PACK32;
         VkFormat stored = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32_UINT;
         VkFormat last = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
-        static const masu_image_id between[] = {MASU_IMAGE_LDR, MASU_IMAGE_SMOOTH, MASU_IMAGE_UPSCALED};
+        static const masu_image_id between[] = {MASU_IMAGE_LDR, MASU_IMAGE_SMOOTH,
+                                                MASU_IMAGE_UPSCALED};
         for (size_t k = 0; k < sizeof between / sizeof *between; k++) {
             assert_int_equal(masu_plan_format(&plan, between[k]), wanted);
             assert_int_equal(masu_plan_store_format(&plan, between[k]), stored);
         }
-        VkFormat mean = rows[i].encoding == MASU_ENCODING_SRGB ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R16G16B16A16_SFLOAT;
+        VkFormat mean = rows[i].encoding == MASU_ENCODING_SRGB ? VK_FORMAT_R16G16B16A16_UNORM
+                                                               : VK_FORMAT_R16G16B16A16_SFLOAT;
         assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_HISTORY), mean);
         assert_int_equal(masu_plan_store_format(&plan, MASU_IMAGE_HISTORY), VK_FORMAT_R32G32_UINT);
         assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_FINAL), last);
@@ -599,15 +601,22 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     BAD("reserve.lines", d.reserve.lines = MASU_LINES_MAX + 1);
     BAD("reserve.trail_points", d.reserve.trail_points = MASU_PARTICLES_MAX + 1);
     BAD("reserve.textures", d.reserve.textures = MASU_LIVE_TEXTURES_MAX + 1);
-    BAD("reserve.texture_size.width", (d.reserve.textures = 1, d.reserve.texture_size.width = 4097));
-    BAD("reserve.texture_size.height", (d.reserve.textures = 1, d.reserve.texture_size.height = 4097));
+    BAD("reserve.texture_size.width",
+        (d.reserve.textures = 1, d.reserve.texture_size.width = 4097));
+    BAD("reserve.texture_size.height",
+        (d.reserve.textures = 1, d.reserve.texture_size.height = 4097));
     BAD("reserve.texture_bytes", (d.reserve.textures = 1, d.reserve.texture_bytes = 3));
-    BAD("reserve.texture_bytes", (d.reserve.textures = 1, d.reserve.texture_bytes = (1u << 28) + 1));
+    BAD("reserve.texture_bytes",
+        (d.reserve.textures = 1, d.reserve.texture_bytes = (1u << 28) + 1));
     d = scene_desc(RASTER, 64, 64);
-    d.reserve = (masu_reserve){.particles = MASU_PARTICLES_MAX, .decals = MASU_DECALS_MAX, .lines = MASU_LINES_MAX};
+    d.reserve = (masu_reserve){
+        .particles = MASU_PARTICLES_MAX, .decals = MASU_DECALS_MAX, .lines = MASU_LINES_MAX};
     compile(&d, &plan);
     /* 2^28 texels, and one texture more; sizes that are not given. */
-    d.reserve = (masu_reserve){.trail_points = MASU_PARTICLES_MAX, .textures = 16, .texture_size = {4096, 4096}, .texture_bytes = 1u << 28};
+    d.reserve = (masu_reserve){.trail_points = MASU_PARTICLES_MAX,
+                               .textures = 16,
+                               .texture_size = {4096, 4096},
+                               .texture_bytes = 1u << 28};
     compile(&d, &plan);
     assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].width, 4096);
     d.reserve.textures = 17;
@@ -619,7 +628,8 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     compile(&d, &plan);
     assert_int_equal(plan.desc.reserve.texture_size.height, 256);
     assert_int_equal(plan.desc.reserve.texture_bytes, 4 * 256 * 256);
-    d.reserve = (masu_reserve){.particles = MASU_PARTICLES_MAX, .lines = MASU_LINES_MAX, .textures = 1};
+    d.reserve =
+        (masu_reserve){.particles = MASU_PARTICLES_MAX, .lines = MASU_LINES_MAX, .textures = 1};
     /* Without a scene there is no camera, and no passes are planned for them. */
     masu_desc none = source_desc(64, 64);
     none.reserve = d.reserve;
@@ -637,15 +647,16 @@ static void a_refused_knob_says_what_it_takes(void **state) {
         double value;
         const char *text;
         uint64_t needed, given;
-    } rows[] = {
-        {"scale", 1.5, "rungs[1].scale is 1.5, allowed are 0 to 1", 0, 0},
-        {"lod_error", -2e9,
-         "rungs[1].lod_error is -2000000000 pixels, allowed are -1e+09 to 1e+09", 0, 0},
-        {"march_steps", 2049, "rungs[1].march_steps is 2049 steps, allowed are 0 to 2048", 2048, 2049},
-        {"shadow_resolution", 8,
-         "rungs[1].shadow_resolution is 8 texels, allowed are 0 and 16 to 8192", 16, 8},
-        {"shadow_refresh", 65, "rungs[1].shadow_refresh[0] is 65 frames, allowed are 0 to 64", 64, 65},
-        {"aa", 7, "rungs[1].aa is 7, allowed are 0 to 6", 6, 7}};
+    } rows[] = {{"scale", 1.5, "rungs[1].scale is 1.5, allowed are 0 to 1", 0, 0},
+                {"lod_error", -2e9,
+                 "rungs[1].lod_error is -2000000000 pixels, allowed are -1e+09 to 1e+09", 0, 0},
+                {"march_steps", 2049, "rungs[1].march_steps is 2049 steps, allowed are 0 to 2048",
+                 2048, 2049},
+                {"shadow_resolution", 8,
+                 "rungs[1].shadow_resolution is 8 texels, allowed are 0 and 16 to 8192", 16, 8},
+                {"shadow_refresh", 65,
+                 "rungs[1].shadow_refresh[0] is 65 frames, allowed are 0 to 64", 64, 65},
+                {"aa", 7, "rungs[1].aa is 7, allowed are 0 to 6", 6, 7}};
     for (size_t i = 0; i < COUNT(rows); i++) {
         masu_desc d = scene_desc(RASTER | SDF, 640, 480);
         masu_detail detail;
@@ -743,7 +754,8 @@ static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
         support_scene.placed_occluders = 1;
         compile(&d, &plan); /* AUTO disables the feature, and reports it */
         assert_int_equal(plan.occlusion, 0);
-        assert_string_equal(plan.why[MASU_PASS_CULL], "a mesh has too many primitives or instances");
+        assert_string_equal(plan.why[MASU_PASS_CULL],
+                            "a mesh has too many primitives or instances");
         d.rung_count = 1;
         d.rungs[0].occlusion = MASU_ON;
         assert_refused(&d, MASU_ERROR_LIMIT, "rungs[].occlusion");
@@ -923,7 +935,8 @@ static void a_missing_vulkan_handle_is_named(void **state) {
     assert_string_equal(detail.what, "vkGetDeviceProcAddr"); /* no_function returns none */
 }
 
-static void *VKAPI_PTR no_allocation(void *user, size_t size, size_t align, VkSystemAllocationScope s) {
+static void *VKAPI_PTR no_allocation(void *user, size_t size, size_t align,
+                                     VkSystemAllocationScope s) {
     (void)user, (void)size, (void)align, (void)s;
     return NULL;
 }

@@ -68,10 +68,12 @@ static void known_devices_have_their_class(void **state) {
                                             discrete ? VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU
                                                      : VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU);
             if (is != known[i].wanted)
-                fail_msg("%04x:%04x is of '%s'", known[i].vendor, known[i].device, masu_device_class_name(is));
+                fail_msg("%04x:%04x is of '%s'", known[i].vendor, known[i].device,
+                         masu_device_class_name(is));
         }
         /* A CPU with the IDs of a GPU is a CPU. */
-        assert_int_equal(class_of(known[i].vendor, known[i].device, VK_PHYSICAL_DEVICE_TYPE_CPU), MASU_DEVICE_OTHER);
+        assert_int_equal(class_of(known[i].vendor, known[i].device, VK_PHYSICAL_DEVICE_TYPE_CPU),
+                         MASU_DEVICE_OTHER);
     }
     assert_string_equal(masu_device_class_name(MASU_DEVICE_OTHER), "");
     assert_string_equal(masu_device_class_name((masu_device_class)99), "");
@@ -123,7 +125,8 @@ static uint32_t play(const masu_ladder *l, const float *truth, const float *prio
     while (fits + 1 < l->count && load * (double)truth[fits] > 0.93 * 16.67) fits++;
     for (uint32_t f = 0; f < FRAMES; f++) {
         if (f >= LATENCY) {
-            masu_governor_sample s = {.frame = f - LATENCY, .rung = drawn[f - LATENCY], .gpu_ms = ms[f - LATENCY]};
+            masu_governor_sample s = {
+                .frame = f - LATENCY, .rung = drawn[f - LATENCY], .gpu_ms = ms[f - LATENCY]};
             masu_governor_sample_in(&g, &s);
         }
         drawn[f] = masu_governor_pick(&g, f);
@@ -150,17 +153,17 @@ static void a_first_estimate_misses_a_few_frames_at_most(void **state) {
             for (uint32_t r = 1; r < l->count; r++) { /* a load for which this rung is right */
                 for (uint32_t seed = 0; seed < 4; seed++) {
                     for (int way = 0; way < 2; way++)
-                        over[way] += play(l, truth, way ? truth : l->ratios, 0.9 * 16.67 / (double)truth[r], seed,
-                                          &lost[way]);
+                        over[way] += play(l, truth, way ? truth : l->ratios,
+                                          0.9 * 16.67 / (double)truth[r], seed, &lost[way]);
                 }
             }
         }
         double runs = 4.0 * 5.0 * (l->count - 1);
-        print_message(
-            "  %-16s of 600 frames over the target: by the mean of the classes %4.1f, by its own %4.1f; rungs "
-            "lost a frame: %.3f, %.3f\n",
-            masu_scene_class_name((masu_scene_class)c), over[0] / runs, over[1] / runs,
-            lost[0] / runs / 600, lost[1] / runs / 600);
+        print_message("  %-16s of 600 frames over the target: by the mean of the classes %4.1f, by "
+                      "its own %4.1f; rungs "
+                      "lost a frame: %.3f, %.3f\n",
+                      masu_scene_class_name((masu_scene_class)c), over[0] / runs, over[1] / runs,
+                      lost[0] / runs / 600, lost[1] / runs / 600);
         for (int way = 0; way < 2; way++)
             assert_true(over[way] / runs <= 4.0 && lost[way] / runs / 600 <= 0.25);
     }

@@ -19,10 +19,12 @@ static void places_are_found_again(void **state) {
     (void)state;
     for (double along = 0; along < road.length; along += 1.7) {
         for (double side = -4; side <= 4; side += 4) {
-            track_place p = track_along(&road, along, side), found = track_find(&road, p.ground, -1);
+            track_place p = track_along(&road, along, side),
+                        found = track_find(&road, p.ground, -1);
             /* The road is straight between two points, and a position next to a corner has two
              * solutions. */
-            assert_true(fabs(found.along - along) < 0.8 || fabs(found.along - along) > road.length - 0.8);
+            assert_true(fabs(found.along - along) < 0.8 ||
+                        fabs(found.along - along) > road.length - 0.8);
             assert_true(fabs(found.side - side) < 0.1);
         }
     }

@@ -46,7 +46,8 @@ static void what_emits_and_is_lit_is_rounded_so_far(void **state) {
             kept = fmax(kept, out[4 + c]);
             albedo = fmax(albedo, fabs(sqrt(m[c]) - sqrt(out[c])));
         }
-        for (int c = 0; c < 3; c++) hue = fmax(hue, fabs(sqrt(m[4 + c] / most) - sqrt(out[4 + c] / kept)));
+        for (int c = 0; c < 3; c++)
+            hue = fmax(hue, fabs(sqrt(m[4 + c] / most) - sqrt(out[4 + c] / kept)));
         if (level >= 1)
             bright = fmax(bright, fabs(kept / most - 1));
         else if (level >= 1.0 / 16)
@@ -54,8 +55,10 @@ static void what_emits_and_is_lit_is_rounded_so_far(void **state) {
         rough = fmax(rough, fabs(m[3] - out[3]));
         assert_true(m[7] == out[7]);
     }
-    printf("  emission %.4f from 1 on, %.4f from 1/16 on, hue %.4f, albedo %.4f, roughness %.4f\n", bright, dim, hue, albedo, rough);
-    assert_true(bright < 0.033 && dim < 0.066 && hue < 1 / 23.9 && albedo < 1 / 61.9 && rough < 1 / 25.9);
+    printf("  emission %.4f from 1 on, %.4f from 1/16 on, hue %.4f, albedo %.4f, roughness %.4f\n",
+           bright, dim, hue, albedo, rough);
+    assert_true(bright < 0.033 && dim < 0.066 && hue < 1 / 23.9 && albedo < 1 / 61.9 &&
+                rough < 1 / 25.9);
     assert_true(bright > 0.025 && hue > 1 / 26.0); /* and the trials reach it */
 }
 
@@ -65,7 +68,9 @@ static void what_is_black_keeps_eight_bits(void **state) {
         double m[8] = {0, 0, 0, any(), 16 * any(), 16 * any(), 16 * any(), 0}, out[8];
         uint32_t normal = round_trip(m, out);
         assert_false(masu_texel_is_unlit(normal));
-        for (int c = 0; c < 3; c++) assert_true(fabs(sqrt(m[4 + c] / 16) - sqrt(out[4 + c] / 16)) < 0.501 / 255 && out[c] == 0);
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(sqrt(m[4 + c] / 16) - sqrt(out[4 + c] / 16)) < 0.501 / 255 &&
+                        out[c] == 0);
         assert_true(fabs(m[3] - out[3]) < 0.501 / 255 && out[7] == 0);
     }
 }
@@ -91,7 +96,8 @@ static void what_is_lit(void **state) {
 static void any_texels_are_materials(void **state) {
     (void)state;
     for (int i = 0; i < 200000; i++) {
-        uint32_t word = (uint32_t)support_random(&state_of), normal = (uint32_t)support_random(&state_of);
+        uint32_t word = (uint32_t)support_random(&state_of),
+                 normal = (uint32_t)support_random(&state_of);
         uint8_t texel[4];
         double m[8];
         memcpy(texel, &word, sizeof texel);

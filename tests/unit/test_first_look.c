@@ -18,13 +18,15 @@
 
 #define ASPECT (16.0 / 9)
 
-static void place_shape(masu_bake_content *content, masu_bake_vec3 size, double scale, masu_bake_vec3 at) {
+static void place_shape(masu_bake_content *content, masu_bake_vec3 size, double scale,
+                        masu_bake_vec3 at) {
     masu_bake_shape shape = {.kind = MASU_BAKE_BOX, .size = size};
     masu_bake_content piece = {0};
     masu_bake_make_shape(&shape, false, &piece);
     masu_bake_overrides none = {NULL, 0};
     masu_bake_residence residence = {0};
-    masu_bake_affine move = masu_bake_translation(at), grow = masu_bake_scaling(masu_bake_v3(scale, scale, scale));
+    masu_bake_affine move = masu_bake_translation(at),
+                     grow = masu_bake_scaling(masu_bake_v3(scale, scale, scale));
     masu_bake_affine placement = masu_bake_multiply(&move, &grow);
     assert_null(masu_bake_place(content, &piece, &residence, &placement, &none, NULL));
     masu_bake_content_release(&piece);
@@ -90,10 +92,12 @@ static void the_model_fills_the_frame(void **state) {
                 project(&content, 1, d.look.keys, most);
                 double share = plays ? 0.75 : 0.89; /* room to move */
                 assert_true(fabs(fmax(most[0], most[1]) - share) < 0.03);
-                assert_int_equal(masu_bake_count(&content, MASU_BLOB_INSTANCES), things[n].ground ? 2 : 1);
+                assert_int_equal(masu_bake_count(&content, MASU_BLOB_INSTANCES),
+                                 things[n].ground ? 2 : 1);
                 /* a long table is viewed from above, not along its top */
                 if (e[1] < 0.5 * fmax(e[0], e[2]))
-                    assert_true((double)d.look.keys[0].position[1] > bounds.high.y + 0.25 * e[1] * scales[s]);
+                    assert_true((double)d.look.keys[0].position[1] >
+                                bounds.high.y + 0.25 * e[1] * scales[s]);
                 masu_bake_box all = masu_bake_bounds(&content, &identity);
                 if (things[n].ground) { /* below it, but by an invisible gap at most */
                     double gap = bounds.low.y - all.low.y;

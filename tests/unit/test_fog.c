@@ -54,9 +54,11 @@ static void depths_are_those_of_numeric_integrals(void **state) {
         float falloff = (float)pow(10, -4 + 4 * random_unit(&seed));
         float height = (float)(200 * random_unit(&seed) - 50),
               start = (float)(i % 3 ? 0 : 30 * random_unit(&seed));
-        float climb = (float)(2 * random_unit(&seed) - 1), far = (float)pow(10, 4 * random_unit(&seed));
+        float climb = (float)(2 * random_unit(&seed) - 1),
+              far = (float)pow(10, 4 * random_unit(&seed));
         if (i % 4 == 0)
-            climb = (float)((double)climb * pow(10, -8 * random_unit(&seed))); /* near the horizon */
+            climb =
+                (float)((double)climb * pow(10, -8 * random_unit(&seed))); /* near the horizon */
         if (i % 64 == 0) climb = 0;
         double want = integral((double)density, (double)falloff, (double)height, (double)climb,
                                (double)start, (double)far);
@@ -82,7 +84,8 @@ static void a_ray_to_the_sky_is_one_of_great_length(void **state) {
     for (int i = 0; i < 1500; i++) {
         float density = (float)pow(10, -4 + 3 * random_unit(&seed));
         float falloff = (float)pow(10, -2 + 2 * random_unit(&seed));
-        float height = (float)(100 * random_unit(&seed)), climb = (float)pow(10, -2 * random_unit(&seed));
+        float height = (float)(100 * random_unit(&seed)),
+              climb = (float)pow(10, -2 * random_unit(&seed));
         float start = (float)(20 * random_unit(&seed));
         double want =
             integral((double)density, (double)falloff, (double)height, (double)climb, (double)start,
@@ -116,7 +119,8 @@ static void fog_is_the_same_both_ways_and_adds_up(void **state) {
     (void)state;
     uint64_t seed = 7;
     for (int i = 0; i < 1500; i++) {
-        float falloff = (float)pow(10, -4 + 3 * random_unit(&seed)), height = (float)(20 * random_unit(&seed));
+        float falloff = (float)pow(10, -4 + 3 * random_unit(&seed)),
+              height = (float)(20 * random_unit(&seed));
         float climb = (float)(2 * random_unit(&seed) - 1), far = (float)(100 * random_unit(&seed));
         float there = masu_fog_depth(0.0001f, falloff, height, climb, 0, far);
         float back = masu_fog_depth(0.0001f, falloff, height + climb * far, -climb, 0, far);
@@ -152,7 +156,8 @@ static void any_bits_give_a_depth(void **state) {
 static void fog_that_starts_nowhere_starts_at_the_eye(void **state) {
     (void)state;
     static const float odd[] = {-30, -INFINITY, INFINITY, NAN};
-    float near = masu_fog_depth(0.01f, 0.1f, 2, 0.5f, 0, 50), sky = masu_fog_depth_sky(0.01f, 0.1f, 2, 0.5f, 0);
+    float near = masu_fog_depth(0.01f, 0.1f, 2, 0.5f, 0, 50),
+          sky = masu_fog_depth_sky(0.01f, 0.1f, 2, 0.5f, 0);
     assert_true(near > 0 && sky > near);
     for (int i = 0; i < 4; i++) {
         assert_true(masu_fog_depth(0.01f, 0.1f, 2, 0.5f, odd[i], 50) == near);

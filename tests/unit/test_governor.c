@@ -294,11 +294,14 @@ static void it_stays_sound_under_a_million_samples(void **state) {
             masu_governor_override(&g, frame, (uint32_t)(i % 20), 0);
         if (support_random(&random) % 5000 == 0) frame += support_random(&random) >> 50;
         if (support_random(&random) % 100 == 0)
-            masu_governor_shown(&g, frame - support_random_in(&random, 0, 9), support_random(&random) >> 40,
+            masu_governor_shown(&g, frame - support_random_in(&random, 0, 9),
+                                support_random(&random) >> 40,
                                 i % 7 ? 16666667 : support_random(&random) >> 36);
         if (support_random(&random) % 3000 == 0) {
-            masu_governor_desc d = {.mode = MASU_GOVERNOR_ON, .target_ms = (float)any_time(&random),
-                                    .best_rung = (uint32_t)(i % 3), .worst_rung = (uint32_t)(i % 18)};
+            masu_governor_desc d = {.mode = MASU_GOVERNOR_ON,
+                                    .target_ms = (float)any_time(&random),
+                                    .best_rung = (uint32_t)(i % 3),
+                                    .worst_rung = (uint32_t)(i % 18)};
             masu_governor_adjust(&g, &d);
         }
         if (support_random(&random) % 3000 == 0) masu_governor_scale(&g, any_time(&random), frame);
@@ -315,7 +318,8 @@ static void it_stays_sound_under_a_million_samples(void **state) {
         /* The estimated cost of a rung remains within a factor of the ladder's cost. */
         for (uint32_t r = 0; r < g.count; r++) {
             double learnt = g.cost[r] / g.prior[r];
-            if (!(learnt > 0.2499 && learnt < 4.001)) fail_msg("rung %u: %g of its cost at %u", r, learnt, i);
+            if (!(learnt > 0.2499 && learnt < 4.001))
+                fail_msg("rung %u: %g of its cost at %u", r, learnt, i);
         }
     }
 }
@@ -326,7 +330,8 @@ static void what_it_learns_of_a_rung_stays_near_what_the_ladder_says(void **stat
     static const double times[] = {200.0, 0.2};
     for (int k = 0; k < 2; k++) {
         masu_governor g;
-        const masu_governor_rung ladder[2] = {{.scale = 1.0, .cost = 1.0}, {.scale = 0.5, .cost = 0.25}};
+        const masu_governor_rung ladder[2] = {{.scale = 1.0, .cost = 1.0},
+                                              {.scale = 0.5, .cost = 0.25}};
         const masu_governor_desc d = {.mode = MASU_GOVERNOR_ON, .target_ms = 16.0f};
         masu_governor_init(&g, &d, ladder, 2);
         uint64_t frame = 0;
@@ -337,7 +342,8 @@ static void what_it_learns_of_a_rung_stays_near_what_the_ladder_says(void **stat
         double prior = g.prior[1], most = 1.0;
         for (; frame < 70; frame++) {
             g.cost_variance[1] = 1e4;
-            masu_governor_sample s = {.frame = frame, .rung = 1, .gpu_ms = times[k], .wall_ms = times[k]};
+            masu_governor_sample s = {
+                .frame = frame, .rung = 1, .gpu_ms = times[k], .wall_ms = times[k]};
             masu_governor_sample_in(&g, &s);
             double off = g.cost[1] > prior ? g.cost[1] / prior : prior / g.cost[1];
             most = off > most ? off : most;

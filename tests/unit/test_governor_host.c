@@ -159,7 +159,8 @@ static void unusual_frames_say_nothing(void **state) {
         masu_governor_info before = report(&g);
         uint32_t worst = 0;
         for (uint32_t i = 0; i < 50; i++, p.frame++) { /* a level is being loaded */
-            uint32_t rung = told ? masu_governor_hold(&g, p.frame) : masu_governor_pick(&g, p.frame);
+            uint32_t rung =
+                told ? masu_governor_hold(&g, p.frame) : masu_governor_pick(&g, p.frame);
             worst = rung > worst ? rung : worst;
             masu_governor_sample k = {.frame = p.frame,
                                       .rung = rung,
@@ -335,7 +336,8 @@ static void garbage_is_no_state(void **state) {
             assert_true(rung >= 1 && rung <= 5);
         }
         masu_governor_info info = report(&g);
-        assert_true(isfinite(info.load_ms) && isfinite(info.fixed_ms) && isfinite(info.start_delay_ms));
+        assert_true(isfinite(info.load_ms) && isfinite(info.fixed_ms) &&
+                    isfinite(info.start_delay_ms));
     }
     assert_true(taken > 1000);
 }
@@ -364,7 +366,8 @@ static void frames_in_flight_are_told_apart(void **state) {
                     double ms = masu_timeline_wall(&t, slot, flight);
                     double truth = (double)took[f - flight] * 1e-6;
                     if (fabs(ms - truth) > 1e-9)
-                        fail_msg("flight %u, frame %u: %.3f ms, not %.3f", flight, f - flight, ms, truth);
+                        fail_msg("flight %u, frame %u: %.3f ms, not %.3f", flight, f - flight, ms,
+                                 truth);
                     twice += (double)(done[f - flight] - submit[f - flight]) * 1e-6;
                     whole += truth;
                 }
@@ -491,7 +494,8 @@ static void frames_are_shown_for_whole_refreshes(void **state) {
             fail_msg("case %u: %u refreshes", (unsigned)i, info.refreshes);
         double interval = info.refreshes * cases[i].refresh * 1e-6;
         double delay = interval - (double)info.predicted_ms[info.rung];
-        assert_true((double)info.start_delay_ms <= delay && (double)info.start_delay_ms > delay - 2.0);
+        assert_true((double)info.start_delay_ms <= delay &&
+                    (double)info.start_delay_ms > delay - 2.0);
         masu_governor_shown(&g, p.frame - 1, at + 1, 0); /* no longer available */
         frame(&g, &p);
         assert_int_equal(report(&g).refreshes, 0);

@@ -176,9 +176,11 @@ static void handles_of_another_scene_are_refused(void **state) {
     assert_int_equal(masu_model_node_find(&m, model_of, "plate"), MASU_NODE_NONE);
     REFUSED("light", masu_punctual_light_get(&m, light_of, &carried, &failure));
     REFUSED("light", masu_punctual_light_set(&m, light_of, &light, &failure));
-    REFUSED("instance", masu_punctual_light_set(&m, masu_punctual_light_at(&m, 0), &light, &failure));
+    REFUSED("instance",
+            masu_punctual_light_set(&m, masu_punctual_light_at(&m, 0), &light, &failure));
     assert_non_null(strstr(failure.text, "light 0: instance handle"));
-    assert_int_equal(masu_punctual_light_get(&m, masu_punctual_light_at(&m, 0), &carried, &failure), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(&m, masu_punctual_light_at(&m, 0), &carried, &failure),
+                     MASU_OK);
     assert_int_not_equal(carried.instance.id, light.instance.id);
 }
 

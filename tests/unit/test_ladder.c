@@ -443,9 +443,11 @@ static void check_shared(const masu_desc *whole) {
         /* Images kept for the next frame have the size of the largest rung that traces, whichever
          * rung reads them. */
         const uint32_t k = masu_images[i].kept ? MASU_IMAGE_SPECULAR_HISTORY_GUIDE : i;
-        assert_true(plan.images[i].width >= most[i].width && plan.images[i].height >= most[i].height);
+        assert_true(plan.images[i].width >= most[i].width &&
+                    plan.images[i].height >= most[i].height);
         assert_true(plan.images[i].width <= most[k].width || plan.images[i].width == most[i].width);
-        assert_true(plan.images[i].height <= most[k].height || plan.images[i].height == most[i].height);
+        assert_true(plan.images[i].height <= most[k].height ||
+                    plan.images[i].height == most[i].height);
     }
 }
 
@@ -526,7 +528,8 @@ static void what_a_scene_lacks_is_ignored(void **state) {
         d.rungs[0] = wish;
         if (!(parts & SDF)) d.rungs[0].march_steps = 64;
         compile(&d);
-        assert_memory_equal(&plan.rungs[0].active, &plain.rungs[0].active, sizeof plan.rungs[0].active);
+        assert_memory_equal(&plan.rungs[0].active, &plain.rungs[0].active,
+                            sizeof plan.rungs[0].active);
         assert_int_equal(plan.recordings, plain.recordings);
         for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
             assert_int_equal(plan.images[i].used, plain.images[i].used);

@@ -29,7 +29,8 @@ static masu_punctual_light_state random_light(int i) {
         s.direction[k] = (float)random_between(&seed, -1, 1);
     }
     if (s.spot) {
-        s.outer = (float)(i % 5 ? random_between(&seed, 0.01, PI) : random_spread(&seed, 1e-6, 0.01));
+        s.outer =
+            (float)(i % 5 ? random_between(&seed, 0.01, PI) : random_spread(&seed, 1e-6, 0.01));
         s.inner = s.outer * (float)random_between(&seed, 0, 1);
     }
     return s;
@@ -50,7 +51,8 @@ static masu_ref_light reference_of(const masu_punctual_light_state *s) {
 
 /* A point that the light can reach: within its range, and mostly within its cone. */
 static void point_of(const masu_punctual_light_state *s, double out[3]) {
-    double d[3], length = 0, reach = (double)s->range * (seed & 256 ? random_between(&seed, 0, 1) : 0.99999);
+    double d[3], length = 0,
+                 reach = (double)s->range * (seed & 256 ? random_between(&seed, 0, 1) : 0.99999);
     double wide = s->spot ? 1.2 * tan(fmin((double)s->outer, 1.5)) : 3;
     for (int k = 0; k < 3; k++) {
         d[k] = s->spot ? (double)s->direction[k] : 0;
@@ -103,7 +105,8 @@ static void a_bound_holds_all_that_is_reached(void **state) {
 static void make_camera(float clip[16], double right[3], double up[3], double forward[3],
                         double tan_x, double tan_y) {
     double length;
-    for (int k = 0; k < 3; k++) forward[k] = random_between(&seed, -1, 1), right[k] = random_between(&seed, -1, 1);
+    for (int k = 0; k < 3; k++)
+        forward[k] = random_between(&seed, -1, 1), right[k] = random_between(&seed, -1, 1);
     length = sqrt(forward[0] * forward[0] + forward[1] * forward[1] + forward[2] * forward[2]);
     for (int k = 0; k < 3; k++) forward[k] = (double)(float)(forward[k] / length);
     up[0] = right[1] * forward[2] - right[2] * forward[1];
@@ -129,7 +132,8 @@ static void what_is_left_out_lights_nothing_in_the_picture(void **state) {
     for (int i = 0; i < 4000; i++) {
         float clip[16];
         double right[3], up[3], forward[3];
-        double tan_y = i % 4 ? random_between(&seed, 0.1, 2) : random_spread(&seed, 5e-4, 48), tan_x = tan_y * random_spread(&seed, 0.1, 10);
+        double tan_y = i % 4 ? random_between(&seed, 0.1, 2) : random_spread(&seed, 5e-4, 48),
+               tan_x = tan_y * random_spread(&seed, 0.1, 10);
         make_camera(clip, right, up, forward, tan_x, tan_y);
         masu_punctual_light_state s = random_light(i);
         masu_ref_light ref = reference_of(&s);

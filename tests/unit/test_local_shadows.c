@@ -19,7 +19,8 @@
 /* ---- Tiles ----------------------------------------------------------------------------------- */
 
 static int overlap(const masu_shadow_tile *a, const masu_shadow_tile *b) {
-    return a->x < b->x + b->size && b->x < a->x + a->size && a->y < b->y + b->size && b->y < a->y + a->size;
+    return a->x < b->x + b->size && b->x < a->x + a->size && a->y < b->y + b->size &&
+           b->y < a->y + a->size;
 }
 
 static void tiles_never_overlap_and_all_come_back(void **state) {
@@ -32,7 +33,8 @@ static void tiles_never_overlap_and_all_come_back(void **state) {
         masu_shadow_tile tiles[MOST] = {{0, 0, 0}};
         masu_shadow_tiles_clear(&t, atlases[a]);
         for (int n = 0; n < 3000; n++) {
-            uint32_t i = (uint32_t)random_between(&seed, 0, MOST - 0.01), size = 128u << (support_random(&seed) % 3);
+            uint32_t i = (uint32_t)random_between(&seed, 0, MOST - 0.01),
+                     size = 128u << (support_random(&seed) % 3);
             if (tiles[i].size) {
                 masu_shadow_tile_give(&t, &tiles[i]);
                 continue;
@@ -72,11 +74,13 @@ static void tiles_move_together(void **state) {
         masu_shadow_tiles_clear(&t, 2048);
         uint64_t area = 0;
         for (int n = 0; n < 400; n++) {
-            uint32_t i = (uint32_t)random_between(&seed, 0, MOST - 0.01), size = 128u << (support_random(&seed) % 3);
+            uint32_t i = (uint32_t)random_between(&seed, 0, MOST - 0.01),
+                     size = 128u << (support_random(&seed) % 3);
             if (tiles[i].size) masu_shadow_tile_give(&t, &tiles[i]);
             else tiles[i] = masu_shadow_tile_take(&t, size);
         }
-        for (int i = 0; i < MOST; i += 1 + (support_random(&seed) % 3)) masu_shadow_tile_give(&t, &tiles[i]);
+        for (int i = 0; i < MOST; i += 1 + (support_random(&seed) % 3))
+            masu_shadow_tile_give(&t, &tiles[i]);
         for (int i = 0; i < MOST; i++) area += (uint64_t)tiles[i].size * tiles[i].size;
         uint32_t moves = 0;
         for (int moved = 1; moved; moves += (uint32_t)moved) {
@@ -85,8 +89,10 @@ static void tiles_move_together(void **state) {
                 masu_shadow_tile before = tiles[i];
                 masu_shadow_tile_move(&t, &tiles[i]);
                 moved = before.x != tiles[i].x || before.y != tiles[i].y;
-                if (moved) assert_true(masu_shadow_tile_order(tiles[i]) < masu_shadow_tile_order(before));
-                for (int k = 0; moved && k < MOST; k++) assert_false(k != i && tiles[k].size && overlap(&tiles[i], &tiles[k]));
+                if (moved)
+                    assert_true(masu_shadow_tile_order(tiles[i]) < masu_shadow_tile_order(before));
+                for (int k = 0; moved && k < MOST; k++)
+                    assert_false(k != i && tiles[k].size && overlap(&tiles[i], &tiles[k]));
             }
             assert_true(moves < 10000);
         }
@@ -181,7 +187,8 @@ static void small_changes_of_order_change_nothing(void **state) {
     (void)state;
     stage s = {0};
     for (int f = 0; f < 400; f++) {
-        double scores[3] = {10 + 2 * sin(f * 0.3), 10 + 2 * sin(f * 0.37 + 2), 10 + 2 * sin(f * 0.41 + 4)};
+        double scores[3] = {10 + 2 * sin(f * 0.3), 10 + 2 * sin(f * 0.37 + 2),
+                            10 + 2 * sin(f * 0.41 + 4)};
         step(&s, 2, scores, 3, 0);
     }
     assert_int_equal(s.lost, 0);
@@ -200,7 +207,8 @@ static void a_shadow_is_held_then_faded_then_given_away(void **state) {
         step(&s, 1, after, 2, 0);
     }
     /* The first age belongs to the frame after the choice. */
-    assert_in_range(frame, MASU_SHADOW_HOLD + MASU_LOCAL_FADE, MASU_SHADOW_HOLD + MASU_LOCAL_FADE + 2);
+    assert_in_range(frame, MASU_SHADOW_HOLD + MASU_LOCAL_FADE,
+                    MASU_SHADOW_HOLD + MASU_LOCAL_FADE + 2);
     assert_non_null(slot_of(&s, 1));
     assert_int_equal(slot_of(&s, 1)->fade, 0);
     for (int f = 0; f < MASU_LOCAL_FADE; f++) step(&s, 1, after, 2, 0);
@@ -229,12 +237,17 @@ static void nobody_leaves_for_nothing(void **state) {
 static void scores_are_of_what_a_light_adds(void **state) {
     (void)state;
     const double none[3] = {0, 0, 0}, half[3] = {0, 0.75, 0};
-    masu_punctual_light_state lamp = {.color = {7, 5, 2}}, ball = {.shape = MASU_SHAPE_SPHERE, .color = {26, 2, 11}, .radius = 0.5f};
-    masu_punctual_light_state tube = {.shape = MASU_SHAPE_CAPSULE, .color = {26, 2, 11}, .radius = 0.02f};
-    masu_punctual_light_state window = {.shape = MASU_SHAPE_RECTANGLE, .color = {3, 2, 1}, .half_axis = {1.5f, 0, 0}};
+    masu_punctual_light_state lamp = {.color = {7, 5, 2}}, ball = {.shape = MASU_SHAPE_SPHERE,
+                                                                   .color = {26, 2, 11},
+                                                                   .radius = 0.5f};
+    masu_punctual_light_state tube = {
+        .shape = MASU_SHAPE_CAPSULE, .color = {26, 2, 11}, .radius = 0.02f};
+    masu_punctual_light_state window = {
+        .shape = MASU_SHAPE_RECTANGLE, .color = {3, 2, 1}, .half_axis = {1.5f, 0, 0}};
     assert_true(fabs(masu_light_intensity(&lamp, none) - 7) < 1e-9);
     assert_true(fabs(masu_light_intensity(&ball, none) - 26 * 0.25) < 1e-6);
-    assert_true(fabs(masu_light_intensity(&tube, half) - 26 * (0.0004 + 4 * 0.75 * 0.02 / 3.14159265)) < 1e-5);
+    assert_true(fabs(masu_light_intensity(&tube, half) -
+                     26 * (0.0004 + 4 * 0.75 * 0.02 / 3.14159265)) < 1e-5);
     assert_true(fabs(masu_light_intensity(&window, half) - 3 * 4 * 0.75 * 1.5 / 3.14159265) < 1e-5);
     assert_true(masu_shadow_score(2, 10, 20) < masu_shadow_score(3, 10, 20));
     assert_true(fabs(masu_shadow_score(2, 10, 20) - 4 * masu_shadow_score(2, 10, 40)) < 1e-9);
@@ -248,7 +261,8 @@ static void a_cone_reaches_into_the_faces_that_it_touches(void **state) {
     uint64_t seed = 9;
     for (int n = 0; n < 300; n++) {
         double axis[3], length = 0, angle = random_between(&seed, 0.1, 3.1);
-        for (int k = 0; k < 3; k++) axis[k] = random_between(&seed, -1, 1), length += axis[k] * axis[k];
+        for (int k = 0; k < 3; k++)
+            axis[k] = random_between(&seed, -1, 1), length += axis[k] * axis[k];
         for (int k = 0; k < 3; k++) axis[k] /= sqrt(length);
         for (int i = 0; i < 500; i++) {
             double d[3], size = 0, cosine = 0, most = 0;
@@ -259,7 +273,8 @@ static void a_cone_reaches_into_the_faces_that_it_touches(void **state) {
                 cosine += d[k] * axis[k];
                 if (fabs(d[k]) > most) most = fabs(d[k]), face = 2 * k + (d[k] < 0);
             }
-            if (acos(cosine / sqrt(size)) < angle) assert_true(masu_local_face_is_lit(axis, angle, face));
+            if (acos(cosine / sqrt(size)) < angle)
+                assert_true(masu_local_face_is_lit(axis, angle, face));
         }
     }
     const double down[3] = {0, -1, 0};

@@ -33,10 +33,12 @@ static void draw(int picture) {
     uint64_t seed = 7 + (uint64_t)picture;
     memset(fine, 0, sizeof fine);
     for (int n = 0; n < counts[picture]; n++) {
-        double x = random_unit(&seed) * FINE, y = random_unit(&seed) * FINE, turn = random_unit(&seed) * 6.2832;
+        double x = random_unit(&seed) * FINE, y = random_unit(&seed) * FINE,
+               turn = random_unit(&seed) * 6.2832;
         double a = 90, b = 2.2; /* half axes of an ellipse */
         if (picture == 0) a = 60 * (0.6 + 0.6 * random_unit(&seed)), b = 0.4 * a;
-        if (picture == 1) a = 200 * (0.5 + random_unit(&seed)), b = 5 + 5 * random_unit(&seed), turn *= 0.1;
+        if (picture == 1)
+            a = 200 * (0.5 + random_unit(&seed)), b = 5 + 5 * random_unit(&seed), turn *= 0.1;
         if (picture == 3) a = b = 0.36 * FINE, x = y = FINE / 2;
         if (picture == 4) a = b = 3 + 6 * random_unit(&seed);
         int reach = (int)a + 1;
@@ -139,7 +141,8 @@ static double seen(int way, double lod) {
     double f = lod - m;
     uint64_t seed = 99;
     for (uint32_t i = 0; i < count; i++) {
-        double u = random_unit(&seed), v = random_unit(&seed), a = sample(alphas[way][m], SIDE >> m, u, v);
+        double u = random_unit(&seed), v = random_unit(&seed),
+               a = sample(alphas[way][m], SIDE >> m, u, v);
         if (f > 0) a += f * (sample(alphas[way][m + 1], SIDE >> (m + 1), u, v) - a);
         there += a >= CUTOFF;
     }
@@ -264,11 +267,12 @@ static void masks_are_told_from_what_else_is_in_alpha(void **state) {
     }
     for (int kind = 0; kind < 5; kind++) {
         for (int a = 0; a < 256; a++)
-            histogram[a] = kind == 0   ? 1                        /* a gradient */
-                           : kind == 1 ? (a < 200 ? 256u - (unsigned)a : 0) /* a gloss, mostly dull */
-                           : kind == 2 ? a == 0                   /* all texels at 0 */
-                           : kind == 3 ? a >= 200                 /* no texel below the cut-off */
-                                       : a == 0 || a == 120;      /* no solid texel */
+            histogram[a] = kind == 0 ? 1 /* a gradient */
+                           : kind == 1
+                               ? (a < 200 ? 256u - (unsigned)a : 0) /* a gloss, mostly dull */
+                           : kind == 2 ? a == 0                     /* all texels at 0 */
+                           : kind == 3 ? a >= 200                   /* no texel below the cut-off */
+                                       : a == 0 || a == 120;        /* no solid texel */
         if (masu_mask_is_meant(histogram, CUTOFF)) fail_msg("kind %d is a mask", kind);
     }
 }

@@ -185,11 +185,13 @@ static void a_double_position_is_exact(void **state) {
     }
     assert_int_equal(masu_model_set_position(&m, lid, nowhere, &failure), MASU_ERROR_ARGUMENT);
     assert_non_null(strstr(failure.text, "position[1] is inf"));
-    assert_int_equal(masu_instance_set_position(&m, instance, nowhere, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_position(&m, instance, nowhere, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_instance_set_position(&m, instance, away, &failure), MASU_OK);
     assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
     assert_true(fabs(is.position[0] - away[0]) < 1e-6);
-    assert_int_equal(masu_model_set_transform(&m, lid, there, &failure), MASU_OK); /* takes it back */
+    assert_int_equal(masu_model_set_transform(&m, lid, there, &failure),
+                     MASU_OK); /* takes it back */
     assert_int_equal(masu_model_get(&m, lid, &model, &failure), MASU_OK);
     assert_rows(model.rows, there);
     for (int k = 0; k < 3; k++) assert_true(model.position[k] == (double)there[4 * k + 3]);
@@ -220,7 +222,8 @@ static void what_cannot_be_changes_nothing(void **state) {
     assert_string_equal(failure.what, "model");
     assert_int_equal(masu_model_node_set(&m, lid, 2, there, &failure), MASU_ERROR_ARGUMENT);
     assert_non_null(strstr(failure.text, "node 2 does not exist, the last one is 1"));
-    assert_int_equal(masu_model_node_get(&m, lid, UINT32_MAX, &node, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_node_get(&m, lid, UINT32_MAX, &node, &failure),
+                     MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_model_set_transform(&m, lid, NULL, &failure), MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.text, "rows is NULL");
     assert_int_equal(masu_model_get(&m, lid, NULL, &failure), MASU_ERROR_ARGUMENT);
@@ -253,7 +256,8 @@ static void a_spare_one_is_shown(void **state) {
     assert_int_equal(added.id, plate.id);
     /* A model of another kind cannot serve as a copy. */
     assert_int_equal(masu_model_show(&m, plate, 0, &failure), MASU_OK);
-    assert_int_equal(masu_model_add(&m, masu_model_find(&m, "lid"), there, &added, &failure), MASU_ERROR_LIMIT);
+    assert_int_equal(masu_model_add(&m, masu_model_find(&m, "lid"), there, &added, &failure),
+                     MASU_ERROR_LIMIT);
 }
 
 /* ---- Slots for copies ------------------------------------------------------------------------ */

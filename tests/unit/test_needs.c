@@ -31,7 +31,14 @@ enum {
     LOCATION = 30,
     BINDING = 33
 };
-enum { IN_UNIFORM_CONSTANT = 0, IN_INPUT = 1, IN_UNIFORM = 2, IN_OUTPUT = 3, IN_WORKGROUP = 4, IN_STORAGE = 12 };
+enum {
+    IN_UNIFORM_CONSTANT = 0,
+    IN_INPUT = 1,
+    IN_UNIFORM = 2,
+    IN_OUTPUT = 3,
+    IN_WORKGROUP = 4,
+    IN_STORAGE = 12
+};
 enum { VERTEX = 0, FRAGMENT = 4, COMPUTE = 5 };
 
 typedef struct shader_needs {
@@ -47,7 +54,9 @@ static const spirv_instruction *defined(const spirv_module *m, uint32_t id) {
     for (size_t i = 0; i < m->count; i++) {
         const spirv_instruction *in = &m->list[i];
         uint32_t at = in->op >= SPIRV_TYPE_INT - 1 && in->op <= SPIRV_TYPE_POINTER ? 1 : 2;
-        if ((at == 1 || in->op == SPIRV_CONSTANT || in->op == SPEC_CONSTANT) && in->count > at && in->word[at] == id) return in;
+        if ((at == 1 || in->op == SPIRV_CONSTANT || in->op == SPEC_CONSTANT) && in->count > at &&
+            in->word[at] == id)
+            return in;
     }
     return NULL;
 }
@@ -75,14 +84,16 @@ static int is_read_only(const spirv_module *m, uint32_t variable, const spirv_in
     uint32_t members = 0;
     for (size_t i = 0; i < m->count; i++) {
         const spirv_instruction *in = &m->list[i];
-        if (in->op == SPIRV_DECORATE && in->word[1] == variable && in->word[2] == NON_WRITABLE) return 1;
-        members += in->op == SPIRV_MEMBER_DECORATE && type && in->word[1] == type->word[1] && in->word[3] == NON_WRITABLE;
+        if (in->op == SPIRV_DECORATE && in->word[1] == variable && in->word[2] == NON_WRITABLE)
+            return 1;
+        members += in->op == SPIRV_MEMBER_DECORATE && type && in->word[1] == type->word[1] &&
+                   in->word[3] == NON_WRITABLE;
     }
     return type && type->op == SPIRV_TYPE_STRUCT && members == type->count - 2;
 }
 
-static void add_variable(const spirv_module *m, const spirv_instruction *in, uint64_t *buffers, uint64_t *uniforms,
-                         shader_needs *n) {
+static void add_variable(const spirv_module *m, const spirv_instruction *in, uint64_t *buffers,
+                         uint64_t *uniforms, shader_needs *n) {
     const spirv_instruction *pointer = defined(m, in->word[1]);
     const spirv_instruction *type = pointer ? defined(m, pointer->word[3]) : NULL;
     uint32_t id = in->word[2], at = 0;
@@ -104,7 +115,8 @@ static void add_variable(const spirv_module *m, const spirv_instruction *in, uin
         if (spirv_decoration(m, id, LOCATION, &at) && at + 1 > n->input_end) n->input_end = at + 1;
         break;
     case IN_OUTPUT:
-        if (spirv_decoration(m, id, LOCATION, &at) && at + 1 > n->output_end) n->output_end = at + 1;
+        if (spirv_decoration(m, id, LOCATION, &at) && at + 1 > n->output_end)
+            n->output_end = at + 1;
         break;
     default: break;
     }
@@ -124,7 +136,8 @@ static shader_needs needs_of(const uint32_t *words, size_t count, const char *na
     for (size_t i = 0; i < m.count; i++) {
         const spirv_instruction *in = &m.list[i];
         if (in->op == ENTRY_POINT) n.stage = in->word[1];
-        if (in->op == EXECUTION_MODE && in->word[2] == LOCAL_SIZE) n.invocations = in->word[3] * in->word[4] * in->word[5];
+        if (in->op == EXECUTION_MODE && in->word[2] == LOCAL_SIZE)
+            n.invocations = in->word[3] * in->word[4] * in->word[5];
         if (in->op == SPIRV_VARIABLE) add_variable(&m, in, &buffers, &uniforms, &n);
     }
     /* Without desc.debug.counters, layouts have the counters only if they are the only buffer. */
@@ -154,21 +167,23 @@ static void assert_fits(const shader_needs *n, const char *name) {
     const struct {
         const char *what;
         uint32_t needed, least;
-    } rows[] = {{"storage buffers", n->storage_buffers, most_buffers(name)},
-                {"uniform buffers", n->uniform_buffers, 12},
-                {"sampled images", n->sampled_images, 16},
-                {"storage images", n->storage_images, 4},
-                {"invocations", n->invocations, 128},
-                {"bytes of shared memory", n->shared_bytes, 16384},
-                {"vertex inputs", n->stage == VERTEX ? n->input_end : 0, 16},
-                {"vertex outputs", n->stage == VERTEX ? n->output_end : 0, 16},
-                /* with emission, velocity and surface only if the device has five attachments */
-                {"fragment outputs", n->stage == FRAGMENT ? n->output_end : 0,
-                 strstr(name, "gbuffer") && strstr(name, "velocity_surface_frag") ? 5 : 4},
-                {"buffers and images written outside of compute", n->stage == COMPUTE ? 0 : n->written, 0}};
+    } rows[] = {
+        {"storage buffers", n->storage_buffers, most_buffers(name)},
+        {"uniform buffers", n->uniform_buffers, 12},
+        {"sampled images", n->sampled_images, 16},
+        {"storage images", n->storage_images, 4},
+        {"invocations", n->invocations, 128},
+        {"bytes of shared memory", n->shared_bytes, 16384},
+        {"vertex inputs", n->stage == VERTEX ? n->input_end : 0, 16},
+        {"vertex outputs", n->stage == VERTEX ? n->output_end : 0, 16},
+        /* with emission, velocity and surface only if the device has five attachments */
+        {"fragment outputs", n->stage == FRAGMENT ? n->output_end : 0,
+         strstr(name, "gbuffer") && strstr(name, "velocity_surface_frag") ? 5 : 4},
+        {"buffers and images written outside of compute", n->stage == COMPUTE ? 0 : n->written, 0}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (rows[i].needed > rows[i].least)
-            fail_msg("%s needs %u %s, every device has %u", name, rows[i].needed, rows[i].what, rows[i].least);
+            fail_msg("%s needs %u %s, every device has %u", name, rows[i].needed, rows[i].what,
+                     rows[i].least);
     }
 }
 
@@ -195,8 +210,10 @@ static void the_shaders_of_the_library_fit_every_device(void **state) {
         if (n.shared_bytes > most.shared_bytes) most.shared_bytes = n.shared_bytes;
         free(words);
     }
-    print_message("most: %u storage buffers, %u uniform buffers, %u sampled, %u storage images, %u bytes shared\n",
-                  most.storage_buffers, most.uniform_buffers, most.sampled_images, most.storage_images, most.shared_bytes);
+    print_message("most: %u storage buffers, %u uniform buffers, %u sampled, %u storage images, %u "
+                  "bytes shared\n",
+                  most.storage_buffers, most.uniform_buffers, most.sampled_images,
+                  most.storage_images, most.shared_bytes);
     assert_int_equal(most.storage_buffers, 9); /* bounce_shade_textures_lights */
     assert_true(most.shared_bytes > 1024 && most.sampled_images > 8 && most.uniform_buffers > 1);
 }
@@ -231,10 +248,35 @@ static void the_code_of_scenes_fits_every_device(void **state) {
 /* Only the variables of set 0 change: set 1 has the same number. */
 static void a_binding_moves_in_set_0_only(void **state) {
     (void)state;
-    const uint32_t words[] = {0x07230203u, 0x10000u, 0, 9, 0,
-                              4u << 16 | 71, 5, 34, 0, 4u << 16 | 71, 5, 33, 7,  /* set 0, binding 7 */
-                              4u << 16 | 71, 6, 34, 1, 4u << 16 | 71, 6, 33, 7,  /* set 1, binding 7 */
-                              4u << 16 | 71, 8, 34, 0, 4u << 16 | 71, 8, 33, 3}; /* set 0, binding 3 */
+    const uint32_t words[] = {0x07230203u,
+                              0x10000u,
+                              0,
+                              9,
+                              0,
+                              4u << 16 | 71,
+                              5,
+                              34,
+                              0,
+                              4u << 16 | 71,
+                              5,
+                              33,
+                              7, /* set 0, binding 7 */
+                              4u << 16 | 71,
+                              6,
+                              34,
+                              1,
+                              4u << 16 | 71,
+                              6,
+                              33,
+                              7, /* set 1, binding 7 */
+                              4u << 16 | 71,
+                              8,
+                              34,
+                              0,
+                              4u << 16 | 71,
+                              8,
+                              33,
+                              3}; /* set 0, binding 3 */
     enum { COUNT = sizeof words / sizeof *words };
     uint32_t is[COUNT];
     memcpy(is, words, sizeof is);
@@ -242,7 +284,8 @@ static void a_binding_moves_in_set_0_only(void **state) {
     for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(is[i], i == 12 ? 3 : words[i]);
     assert_int_equal(masu_interface_of(is, COUNT).bindings, 1u << 3);
     memcpy(is, words, sizeof is);
-    for (uint32_t n = 0; n < COUNT; n++) masu_rebind(is, n, 9, 1); /* cut anywhere, nothing to move */
+    for (uint32_t n = 0; n < COUNT; n++)
+        masu_rebind(is, n, 9, 1); /* cut anywhere, nothing to move */
     assert_memory_equal(is, words, sizeof is);
 }
 

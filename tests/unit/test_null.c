@@ -271,7 +271,8 @@ static const char *read_function(const char *at, function *f) {
 
 static int may_be_null(const char *parameter) {
     return !strcmp(parameter, "detail") || !strcmp(parameter, "progress") ||
-           !strcmp(parameter, "viewports") || !strcmp(parameter, "rect") || !strcmp(parameter, "from");
+           !strcmp(parameter, "viewports") || !strcmp(parameter, "rect") ||
+           !strcmp(parameter, "from");
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */

@@ -99,10 +99,12 @@ static void it_rises_when_frames_come_late(void **state) {
 
 static void no_number_upsets_it(void **state) {
     (void)state;
-    const double numbers[] = {0, -1, 1e-300, 1e300, (double)INFINITY, -(double)INFINITY, (double)NAN};
+    const double numbers[] = {0,          -1, 1e-300, 1e300, (double)INFINITY, -(double)INFINITY,
+                              (double)NAN};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
-            for (int n = 0; n < 5; n++) masu_pacing_choose(&p, frame++, numbers[i], numbers[k], n == 3);
+            for (int n = 0; n < 5; n++)
+                masu_pacing_choose(&p, frame++, numbers[i], numbers[k], n == 3);
             assert_in_range(p.refreshes, 1, MASU_REFRESHES_MOST);
         }
     }

@@ -296,7 +296,8 @@ static void light_probes_cost_only_scenes_that_have_them(void **state) {
     assert_true(plan.needs.probes);
     assert_int_equal(plan.pass_sets, sets + 1);
     assert_int_equal(plan.buffers[MASU_BUFFER_PROBES].bytes,
-                     sizeof(masu_blob_probes) + 6 * (2 * MASU_PROBE_WORDS + MASU_PROBE_LIT_WORDS) * 4);
+                     sizeof(masu_blob_probes) +
+                         6 * (2 * MASU_PROBE_WORDS + MASU_PROBE_LIT_WORDS) * 4);
 }
 
 static void march_steps_reach_the_shaders(void **state) {
@@ -407,8 +408,9 @@ static void twice_the_size_has_a_pass_of_its_own(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "easu_twice runs instead");
     d.debug.exact = 1;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
-    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE),
-                        "the output does not have twice the render size, or the device lacks registers");
+    assert_string_equal(
+        why_of(&d, MASU_PASS_EASU_TWICE),
+        "the output does not have twice the render size, or the device lacks registers");
     d.debug.exact = 0;
     d.deny.easu_twice = 1;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
@@ -420,7 +422,9 @@ static void twice_the_size_has_a_pass_of_its_own(void **state) {
     d = scene_desc(SDF, 1281, 719);
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.scale = 0.5f};
-    assert_frame(&d, 0, MARCH_ALONE LIGHT_SDF "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)");
+    assert_frame(&d, 0,
+                 MARCH_ALONE LIGHT_SDF
+                 "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)");
 }
 
 static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
@@ -429,7 +433,8 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     d.targets.storage = 0;
     d.targets.views = NULL; /* not needed then */
     d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
-    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:final) present(from:final to:target)");
+    assert_frame(&d, 0,
+                 GBUFFER LIGHT_RASTER "tonemap(r:hdr w:final) present(from:final to:target)");
     assert_frame(&d, 1,
                  GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) "
                                       "rcas(r:upscaled w:final) present(from:final to:target)");
@@ -481,8 +486,10 @@ static void the_last_pass_of_a_rung_makes_the_output(void **state) {
                 masu_output_push(&plan, &plan.rungs[r], p, &push);
                 if (!masu_has_pass(&plan.rungs[r].active, p)) continue;
                 assert_int_equal(masu_comes_last(&plan.rungs[r], p), p == last[r]);
-                assert_int_equal(push.output_flags, p == last[r] ? MASU_OUTPUT_LAST | MASU_OUTPUT_DITHER : 0);
-                assert_int_equal(push.output_steps, p == last[r] ? 255u | 255u << 10 | 255u << 20 : 0);
+                assert_int_equal(push.output_flags,
+                                 p == last[r] ? MASU_OUTPUT_LAST | MASU_OUTPUT_DITHER : 0);
+                assert_int_equal(push.output_steps,
+                                 p == last[r] ? 255u | 255u << 10 | 255u << 20 : 0);
             }
         }
     }
@@ -544,9 +551,11 @@ static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
     d.rung_count = 2;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     d.rungs[1] = (masu_rung){.silhouettes = MASU_OFF};
-    assert_frame(&d, 0,
-                 MARCH_ALONE LIGHT_SDF "silhouettes(r:scene_depth r:albedo r:normal r:hdr rb:tiles rb:slots w:silhouettes) "
-                                       "tonemap(r:hdr r:silhouettes w:target)");
+    assert_frame(
+        &d, 0,
+        MARCH_ALONE LIGHT_SDF
+        "silhouettes(r:scene_depth r:albedo r:normal r:hdr rb:tiles rb:slots w:silhouettes) "
+        "tonemap(r:hdr r:silhouettes w:target)");
     compile(&d, &plan);
     assert_int_equal(plan.images[MASU_IMAGE_SILHOUETTES].persistent, 0);
     assert_null(strstr(frame_text(&plan, 1), " silhouettes("));
@@ -554,7 +563,8 @@ static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     compile(&d, &plan);
-    assert_non_null(strstr(frame_text(&plan, 0), "silhouettes(r:depth r:scene_depth r:albedo r:normal r:hdr rb:tiles "));
+    assert_non_null(strstr(frame_text(&plan, 0),
+                           "silhouettes(r:depth r:scene_depth r:albedo r:normal r:hdr rb:tiles "));
     d = scene_desc(RASTER, 64, 64); /* there are no edges to anti-alias */
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
@@ -599,7 +609,8 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     d.rung_count = 2;
     compile(&d, &plan);
     /* At full size 2 * 8 + 4 bytes per pixel outlive the frame, 8 do not. */
-    static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_HISTORY_DEPTH, MASU_IMAGE_FOUND};
+    static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_HISTORY_DEPTH,
+                                        MASU_IMAGE_FOUND};
     uint64_t bytes = 0;
     for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
         const masu_image_plan *image = &plan.images[own[i]];
@@ -611,7 +622,8 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     /* Mips: stationary surfaces two levels finer than the output resolution, moving ones as at full
      * size. */
     const float half = -3.0f, full = -2.0f;
-    const uint32_t bias = offsetof(struct masu_push_gbuffer, mip_bias) / 4, moving = offsetof(struct masu_push_gbuffer, mip_moving) / 4;
+    const uint32_t bias = offsetof(struct masu_push_gbuffer, mip_bias) / 4,
+                   moving = offsetof(struct masu_push_gbuffer, mip_moving) / 4;
     const masu_push_block first = masu_push_of(&plan, 0, MASU_PASS_GBUFFER, 0);
     const masu_push_block second = masu_push_of(&plan, 1, MASU_PASS_GBUFFER, 0);
     assert_true(first.own.real[bias] == half && first.own.real[moving] == full - half);
@@ -632,9 +644,9 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     char expected[512];
     masu_desc d = scene_desc(RASTER, 64, 64);
     d.readback = MASU_READBACK_VELOCITY;
-    (void)snprintf(expected, sizeof expected,
-                   "%svelocity(r:depth u:velocity) " LIGHT_RASTER "readback(from:velocity) " TONEMAP,
-                   gbuffer);
+    (void)snprintf(
+        expected, sizeof expected,
+        "%svelocity(r:depth u:velocity) " LIGHT_RASTER "readback(from:velocity) " TONEMAP, gbuffer);
     assert_frame(&d, 0, expected);
     d = scene_desc(RASTER | SDF, 64, 64);
     d.readback = MASU_READBACK_VELOCITY;
@@ -650,7 +662,8 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     assert_int_equal(plan.buffers[MASU_BUFFER_INSTANCES].count, 6);
     support_scene.sdf_static = 1;
     (void)snprintf(expected, sizeof expected,
-                   "%s" MARCH_ON_RASTER "static_velocity(r:depth r:scene_depth u:velocity) " LIGHT_SDF
+                   "%s" MARCH_ON_RASTER
+                   "static_velocity(r:depth r:scene_depth u:velocity) " LIGHT_SDF
                    "readback(from:velocity) " TONEMAP,
                    gbuffer);
     assert_frame(&d, 0, expected);
@@ -695,7 +708,9 @@ static void picking_costs_nothing_unless_it_is_asked_for(void **state) {
         assert_string_equal(without.why[MASU_PASS_PICK], "desc.picking does not request it");
         assert_string_equal(without.why[MASU_PASS_PICK_TELL], "desc.picking does not request it");
         assert_int_equal(without.buffers[MASU_BUFFER_PICKED].bytes, 0);
-        assert_int_equal(without.images[MASU_IMAGE_PICK_ID].used + without.images[MASU_IMAGE_PICK_DEPTH].used, 0);
+        assert_int_equal(without.images[MASU_IMAGE_PICK_ID].used +
+                             without.images[MASU_IMAGE_PICK_DEPTH].used,
+                         0);
         int raster = (parts[i] & RASTER) != 0;
         for (uint32_t r = 0; r < with.desc.rung_count; r++) {
             assert_int_equal(masu_has_pass(&without.rungs[r].active, MASU_PASS_PICK_TELL), 0);
@@ -705,7 +720,8 @@ static void picking_costs_nothing_unless_it_is_asked_for(void **state) {
         assert_int_equal(with.buffers[MASU_BUFFER_PICKED].role, MASU_ROLE_READBACK);
         assert_int_equal(with.images[MASU_IMAGE_PICK_ID].width, raster ? 2 : 0);
         if (!raster) continue;
-        assert_int_equal(with.buffers[MASU_BUFFER_DRAWS].count, without.buffers[MASU_BUFFER_DRAWS].count + with.draws);
+        assert_int_equal(with.buffers[MASU_BUFFER_DRAWS].count,
+                         without.buffers[MASU_BUFFER_DRAWS].count + with.draws);
         assert_int_equal(with.pick_draws, without.buffers[MASU_BUFFER_DRAWS].count);
         assert_int_equal(with.drawn.words, without.drawn.words + with.listed);
     }
@@ -727,8 +743,8 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "the scene has no transparent materials");
     assert_int_equal(with.pass_sets, without.pass_sets);
     support_scene.transparents = 5, support_scene.transparent_sets = 2;
-    assert_frame(&d, 0,
-                 GBUFFER LIGHT_RASTER "transparents(r:depth r:depth b:hdr) tonemap(r:hdr w:target)");
+    assert_frame(
+        &d, 0, GBUFFER LIGHT_RASTER "transparents(r:depth r:depth b:hdr) tonemap(r:hdr w:target)");
     compile(&d, &with);
     assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "the scene has transparent materials");
     assert_true(with.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
@@ -747,8 +763,9 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     support_scene.shadow_cascades = 1, support_scene.shadow_resolution = 64;
     support_scene.shadow_distance = 50;
     compile(&d, &with); /* the smaller of both depths, and the sun's map */
-    assert_non_null(strstr(frame_text(&with, 0),
-                           " transparents(r:scene_depth r:shadow_map r:scene_depth b:hdr) tonemap(r:hdr "));
+    assert_non_null(
+        strstr(frame_text(&with, 0),
+               " transparents(r:scene_depth r:shadow_map r:scene_depth b:hdr) tonemap(r:hdr "));
 }
 
 /* Per-frame content: a pass for each kind with a reserve, one buffer for all, an image for lines.
@@ -763,11 +780,14 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
     assert_false(bare.images[MASU_IMAGE_OVERLAY].used);
     assert_string_equal(bare.why[MASU_PASS_DECALS], "desc.reserve has no decals");
     d.reserve.particles = 7;
-    assert_frame(&d, 0, GBUFFER MARCH_ON_RASTER LIGHT_SDF "particles(r:scene_depth b:hdr) " TONEMAP);
+    assert_frame(&d, 0,
+                 GBUFFER MARCH_ON_RASTER LIGHT_SDF "particles(r:scene_depth b:hdr) " TONEMAP);
     compile(&d, &plan);
-    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 1 + 4 * 7) + 63) / 64));
+    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride,
+                     64 * ((16 * (3 + 1 + 4 * 7) + 63) / 64));
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
-        if (b != MASU_BUFFER_SPRITES) assert_int_equal(plan.buffers[b].bytes, bare.buffers[b].bytes);
+        if (b != MASU_BUFFER_SPRITES)
+            assert_int_equal(plan.buffers[b].bytes, bare.buffers[b].bytes);
     }
     d.reserve = (masu_reserve){.decals = 7};
     assert_frame(&d, 0,
@@ -778,7 +798,8 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
     /* Textures, whether for sprites or not: a pass that writes them, larger sprites. */
     d.reserve = (masu_reserve){.textures = 2, .texture_size = {8, 16}};
     compile(&d, &plan);
-    assert_non_null(strstr(frame_text(&plan, 0), "textures(u:textures) gbuffer(m:textures c:albedo "));
+    assert_non_null(
+        strstr(frame_text(&plan, 0), "textures(u:textures) gbuffer(m:textures c:albedo "));
     assert_true(plan.images[MASU_IMAGE_TEXTURES].persistent);
     assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].height, 16);
     assert_int_equal(masu_plan_layers(&plan, MASU_IMAGE_TEXTURES), 2);
@@ -795,15 +816,17 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
     assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].width, 1);
     assert_int_equal(plan.buffers[MASU_BUFFER_TEXELS].bytes, 0);
     d.reserve = (masu_reserve){.lines = 7};
-    assert_frame(&d, 0,
-                 GBUFFER MARCH_ON_RASTER LIGHT_SDF
-                 "tonemap(r:hdr w:target) lines(r:scene_depth c:overlay) lines_show(r:overlay u:target)");
+    assert_frame(
+        &d, 0,
+        GBUFFER MARCH_ON_RASTER LIGHT_SDF
+        "tonemap(r:hdr w:target) lines(r:scene_depth c:overlay) lines_show(r:overlay u:target)");
     compile(&d, &plan);
     assert_true(plan.images[MASU_IMAGE_OVERLAY].used);
     assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 2 * 7) + 63) / 64));
     d.targets.storage = 0; /* they are in the image that is blitted */
     compile(&d, &plan);
-    assert_non_null(strstr(frame_text(&plan, 0), "lines_show(r:overlay u:final) present(from:final to:target)"));
+    assert_non_null(strstr(frame_text(&plan, 0),
+                           "lines_show(r:overlay u:final) present(from:final to:target)"));
     /* Draws among the transparent surfaces: one before each slot, one after. */
     d.reserve = (masu_reserve){.particles = 2};
     support_scene.blends = 1, support_scene.transparents = 5, support_scene.transparent_sets = 1;
@@ -842,7 +865,8 @@ static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
 static void ao_comes_after_all_that_writes_occlusion(void **state) {
     (void)state;
     static masu_frame_plan plan;
-    static const char ao[] = "ao(r:depth r:normal w:ao) ao_upsample(r:depth r:normal r:ao u:occlusion) ";
+    static const char ao[] =
+        "ao(r:depth r:normal w:ao) ao_upsample(r:depth r:normal r:ao u:occlusion) ";
     static const char light[] = "light_occluded(r:albedo r:normal r:depth r:occlusion u:hdr) ";
     char expected[512];
     masu_desc d = scene_desc(RASTER, 101, 60);
@@ -915,8 +939,8 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         compile(&d, &plan);
         const masu_rung_plan *rp = &plan.rungs[0];
         uint32_t writers = 0;
-        int written[MASU_RESOURCE_END] = {[MASU_IMAGE_SOURCE] = 1,
-                                          [MASU_RESOURCE(MASU_BUFFER_SLOTS)] = 1}; /* uploaded once */
+        int written[MASU_RESOURCE_END] = {
+            [MASU_IMAGE_SOURCE] = 1, [MASU_RESOURCE(MASU_BUFFER_SLOTS)] = 1}; /* uploaded once */
         int last_pass = -1;
         for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
             if (masu_has_pass(&rp->active, p)) last_pass = (int)p;
@@ -1031,7 +1055,8 @@ static void readback_and_blits_lengthen_lives(void **state) {
                  COLOR | SAMPLED);
     assert_image(&plan, MASU_IMAGE_DEPTH, MASU_PASS_GBUFFER, MASU_PASS_READBACK, 100, 50,
                  DEPTH | SAMPLED | SOURCE);
-    assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_EASU, 80, 40, STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_EASU, 80, 40,
+                 STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_FINAL, MASU_PASS_TONEMAP, MASU_PASS_PRESENT, 100, 50,
                  STORAGE | SOURCE);
     assert_false(plan.images[MASU_IMAGE_SCENE_DEPTH].used);
@@ -1154,7 +1179,8 @@ static void a_sky_that_follows_from_the_sun_is_a_buffer_more(void **state) {
         }
         assert_int_equal(without.buffers[MASU_BUFFER_SKY].bytes, 0);
         for (uint32_t r = 0; r < d.rung_count; r++)
-            assert_memory_equal(&with.rungs[r].active, &without.rungs[r].active, sizeof with.rungs[r].active);
+            assert_memory_equal(&with.rungs[r].active, &without.rungs[r].active,
+                                sizeof with.rungs[r].active);
         for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
             assert_int_equal(with.images[i].used, without.images[i].used);
             assert_int_equal(with.images[i].usage, without.images[i].usage);
@@ -1186,7 +1212,8 @@ static void tiles_have_room_for_lists_at_the_largest_rung(void **state) {
     (void)state;
     static const struct {
         uint32_t parts, words, block_words;
-    } cases[] = {{1, 2, 0}, {1, 2, 1}, {32, 2, 1}, {32, 2, 2}, {33, 3, 2}, {64, 3, 2}, {65, 65, 2}, {4096, 65, 2}};
+    } cases[] = {{1, 2, 0},  {1, 2, 1},  {32, 2, 1},  {32, 2, 2},
+                 {33, 3, 2}, {64, 3, 2}, {65, 65, 2}, {4096, 65, 2}};
     static masu_frame_plan plan;
     for (size_t i = 0; i < COUNT(cases); i++) {
         masu_desc d = scene_desc(SDF, 1000, 100);
@@ -1257,7 +1284,8 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
     assert_int_equal(info.rung_count, 3);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         uint32_t active = 0;
-        for (uint32_t r = 0; r < 3; r++) active |= (uint32_t)masu_has_pass(&plan.rungs[r].active, p) << r;
+        for (uint32_t r = 0; r < 3; r++)
+            active |= (uint32_t)masu_has_pass(&plan.rungs[r].active, p) << r;
         assert_string_equal(info.passes[p].name, masu_passes[p].name);
         assert_string_equal(info.passes[p].why, plan.why[p]);
         assert_int_equal(info.passes[p].active, active);
@@ -1416,7 +1444,8 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
 
 /* ---- Anti-aliasing --------------------------------------------------------------------------- */
 
-#define EDGES(from, to) "smaa_edges(r:" from " wb:edges w:" to ") smaa_blend(r:" from " rb:edges u:" to ")"
+#define EDGES(from, to)                                                                            \
+    "smaa_edges(r:" from " wb:edges w:" to ") smaa_blend(r:" from " rb:edges u:" to ")"
 
 /* SMAA runs between tone mapping and upscaling. If no pass follows, both of its passes write the
  * target. */
@@ -1439,7 +1468,8 @@ static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
                         " present(from:final to:target)");
     d = source_desc(320, 240); /* shown at 1920x1080 */
     d.rungs[0].aa = MASU_AA_SMAA_HIGH;
-    assert_frame(&d, 0, EDGES("source", "smooth") " easu(r:smooth w:upscaled) rcas(r:upscaled w:target)");
+    assert_frame(&d, 0,
+                 EDGES("source", "smooth") " easu(r:smooth w:upscaled) rcas(r:upscaled w:target)");
     d = source_desc(1920, 1080);
     d.rungs[0].aa = MASU_AA_SMAA_HIGH;
     assert_frame(&d, 0, EDGES("source", "target"));
@@ -1514,8 +1544,9 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
                      9 * 48);
     assert_int_equal(with.buffers[MASU_BUFFER_TRACE_FRAME].stride,
                      masu_align_up(16 + 3 * 6 * 16, 64));
-    VkBufferUsageFlags input = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                               VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    VkBufferUsageFlags input =
+        VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+        VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
     assert_int_equal(with.buffers[MASU_BUFFER_VERTICES].usage,
                      plan.buffers[MASU_BUFFER_VERTICES].usage | input);
     assert_int_equal(plan.buffers[MASU_BUFFER_VERTICES].usage & input, 0);

@@ -116,8 +116,10 @@ static void what_is_glossy_is_traced_in_polygons_in_the_sdf_or_in_both(void **st
         assert_true(masu_has_pass(&active, MASU_PASS_SPECULAR_RAYS));
         assert_true(masu_has_pass(&active, MASU_PASS_SPECULAR_SHADE));
         assert_true(masu_has_pass(&active, MASU_PASS_SPECULAR_COMPOSITE));
-        assert_int_equal(masu_has_pass(&active, MASU_PASS_SPECULAR_TRACE), (parts[p] & RASTER) != 0);
-        assert_int_equal(masu_has_pass(&active, MASU_PASS_SPECULAR_TRACE_SDF), (parts[p] & SDF) != 0);
+        assert_int_equal(masu_has_pass(&active, MASU_PASS_SPECULAR_TRACE),
+                         (parts[p] & RASTER) != 0);
+        assert_int_equal(masu_has_pass(&active, MASU_PASS_SPECULAR_TRACE_SDF),
+                         (parts[p] & SDF) != 0);
         assert_false(masu_has_pass(&active, MASU_PASS_SPECULAR_ACCUMULATE));
         assert_true(with.images[MASU_IMAGE_VELOCITY].used);
         assert_int_equal(with.images[MASU_IMAGE_SPECULAR_LIGHT].width, 320);

@@ -116,23 +116,26 @@ static void bake_room(masu_bake_content *c, const masu_bake_probe_settings *s,
  * the closer of SDF and polygons. */
 static void rays_meet_the_sdf_too(void **state) {
     (void)state;
-    static const char text[] = "material red { albedo (0.8, 0.1, 0.2); emissive (1, 2, 3) }\n"
-                               "material grey { albedo 0.5 }\n"
-                               "part ball : red = translate((0, 1.5, 0), sphere(1));\n"
-                               "part wall : grey = difference(translate((0, 1.5, 1.5), box((2, 1.5, 0.02))),\n"
-                               "    translate((0, 1.5, 1.5), box((0.1, 0.1, 1))));\n";
+    static const char text[] =
+        "material red { albedo (0.8, 0.1, 0.2); emissive (1, 2, 3) }\n"
+        "material grey { albedo 0.5 }\n"
+        "part ball : red = translate((0, 1.5, 0), sphere(1));\n"
+        "part wall : grey = difference(translate((0, 1.5, 1.5), box((2, 1.5, 0.02))),\n"
+        "    translate((0, 1.5, 1.5), box((0.1, 0.1, 1))));\n";
     char path[] = "/tmp/masu_field_XXXXXX.sdf";
     int file = mkstemps(path, 4);
     assert_true(file >= 0 && write(file, text, sizeof text - 1) == (ssize_t)sizeof text - 1);
     (void)close(file);
     masu_bake_content c = room(false), bare = room(false);
-    masu_blob_sdf sdf = {.bounds_min = {-2, 0, -2}, .bounds_max = {2, 3, 2}, .lipschitz = 1, .max_distance = 100};
+    masu_blob_sdf sdf = {
+        .bounds_min = {-2, 0, -2}, .bounds_max = {2, 3, 2}, .lipschitz = 1, .max_distance = 100};
     masu_bake_append(&c.section[MASU_BLOB_SDF], &sdf, sizeof sdf);
     masu_bake_trace *trace = masu_bake_trace_make(&c);
     masu_bake_field *field = masu_bake_field_make(&c, path);
     assert_non_null(field);
     masu_bake_trace_add(trace, field);
-    const float outside[3] = {0, 1.5f, 1.9f}, aside[3] = {0.5f, 1.5f, 1.9f}, inside[3] = {0, 1.5f, 0.5f};
+    const float outside[3] = {0, 1.5f, 1.9f}, aside[3] = {0.5f, 1.5f, 1.9f},
+                inside[3] = {0, 1.5f, 0.5f};
     const float back[3] = {0, 0, -2}, up[3] = {0, 1, 0}, high[3] = {1.5f, 1.5f, 0};
     masu_bake_hit hit;
     /* Through the hole: the ball. The direction is 2 long. */

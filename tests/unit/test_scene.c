@@ -162,7 +162,8 @@ static void a_blob_cut_anywhere_and_sealed_again_is_refused(void **state) {
     masu_detail detail;
     for (uint32_t parts = 0; parts <= SUPPORT_ALL; parts++) {
         support_blob_write(&blob, parts);
-        for (size_t size = sizeof(masu_blob_header); size < blob.size; size += whole_run() ? 1 : 3) {
+        for (size_t size = sizeof(masu_blob_header); size < blob.size;
+             size += whole_run() ? 1 : 3) {
             support_blob cut = blob;
             support_blob_seal(cut.bytes, size);
             if (!support_bind(cut.bytes, size, &scene, &detail))
@@ -193,7 +194,8 @@ static void a_blob_with_any_bit_flipped_is_refused(void **state) {
     masu_detail detail;
     for (uint32_t parts = 0; parts <= SUPPORT_ALL; parts++) {
         support_blob_write(&blob, parts);
-        for (size_t bit = 0; bit < 8 * blob.size; bit += bit < 8 * sizeof(masu_blob_header) || whole_run() ? 1 : 7) {
+        for (size_t bit = 0; bit < 8 * blob.size;
+             bit += bit < 8 * sizeof(masu_blob_header) || whole_run() ? 1 : 7) {
             blob.bytes[bit / 8] ^= (unsigned char)(1u << bit % 8);
             if (!support_bind(blob.bytes, blob.size, &scene, &detail)) {
                 fail_msg("parts %u: accepted with bit %zu of byte %zu flipped", parts, bit % 8,

@@ -57,7 +57,8 @@ static void geometry(void) {
         primitives[i] = (masu_blob_primitive){.vertex_count = 1};
     primitives[0].index_count = 3;
     for (uint32_t i = 0; i < 2; i++)
-        meshes[i] = (masu_blob_mesh){.first_primitive = i, .primitive_count = 1, .name = MASU_BLOB_NONE};
+        meshes[i] =
+            (masu_blob_mesh){.first_primitive = i, .primitive_count = 1, .name = MASU_BLOB_NONE};
     for (uint32_t i = 0; i < COUNT(lods); i++)
         lods[i] = (masu_blob_lod){.first_primitive = 2 + i, .error = 1.0f};
     SECTION(VERTICES, vertices, vertices);
@@ -131,7 +132,8 @@ static void skinned(void) {
         instances[i] = (masu_blob_instance){.mesh = i};
         primitives[i].first_vertex = 2 * i;
         primitives[i].vertex_count = 2;
-        skins[i] = (masu_blob_skin){.model = i, .node = i, .first_vertex = 2 * i, .vertex_count = 2, .joint_count = 1};
+        skins[i] = (masu_blob_skin){
+            .model = i, .node = i, .first_vertex = 2 * i, .vertex_count = 2, .joint_count = 1};
     }
     for (uint32_t i = 0; i < COUNT(joints); i++) joints[i] = (masu_blob_joint){.used = 1};
     for (uint32_t i = 0; i < 3; i++)
@@ -166,7 +168,8 @@ static void skins_own_what_their_sections_have(void **state) {
     SKIN("of several instances", instances[0].mesh = 1);
     SKIN("no joints, or too many", skins[0].joint_count = 0);
     SKIN(NULL, skins[0].joint_count = skins[1].joint_count = r.counts[MASU_BLOB_JOINTS] = 65536);
-    SKIN("no joints, or too many", skins[0].joint_count = skins[1].joint_count = r.counts[MASU_BLOB_JOINTS] = 65537);
+    SKIN("no joints, or too many",
+         skins[0].joint_count = skins[1].joint_count = r.counts[MASU_BLOB_JOINTS] = 65537);
     SKIN("lods[0]: is of a mesh that bends", r.counts[MASU_BLOB_LODS] = 1);
 }
 
@@ -212,7 +215,8 @@ static void traced(void) {
     static const uint32_t of[] = {0};
     static const masu_blob_reflections reflections[] = {{0.5f, 100.0f, 0.25f, 0}};
     geometry();
-    trace_nodes[0] = (masu_blob_trace_node){.packed = 128u | 128u << 8 | 128u << 16 | 2u << 24, .child = 1};
+    trace_nodes[0] =
+        (masu_blob_trace_node){.packed = 128u | 128u << 8 | 128u << 16 | 2u << 24, .child = 1};
     memset(trace_triangles, 0, sizeof trace_triangles);
     memset(trace_meshes, 0, sizeof trace_meshes);
     trace_meshes[0] = (masu_blob_trace_mesh){.node_count = 1, .triangle_count = 1, .depth = 1};
@@ -261,7 +265,8 @@ static void numbers_of_parts_fit_their_shaders(void **state) {
                 r.view.code[k].count = COUNT(code);
             }
             slots[at] = values[i];
-            judge(masu_check_sdf(&r), i > 1 && at % 8 > 4 ? "form, a slot and a material" : NULL, __LINE__);
+            judge(masu_check_sdf(&r), i > 1 && at % 8 > 4 ? "form, a slot and a material" : NULL,
+                  __LINE__);
         }
         slots[at] = 0.0f;
     }

@@ -188,21 +188,31 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("materials", 0, MATERIAL_OF[0].depth_bias = -0.0101f);
     LIT("materials", 0, MATERIAL_OF[0].specular_color[1] = 0.5f); /* and no channel is 1 */
     LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.3f));
-    LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.5f, MATERIAL_OF[0].anisotropy = 1.0f));
-    LIT("materials", 0, (MATERIAL_OF[0].anisotropy = MATERIAL_OF[0].coat = 1.0f)); /* one lobe, and none with a coat */
+    LIT("materials", 0,
+        (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.5f,
+         MATERIAL_OF[0].anisotropy = 1.0f));
+    LIT("materials", 0,
+        (MATERIAL_OF[0].anisotropy = MATERIAL_OF[0].coat =
+             1.0f));                                    /* one lobe, and none with a coat */
     LIT("materials", 0, MATERIAL_OF[0].opacity = 0.5f); /* but not transparent */
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_ADDITIVE);
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED);
-    LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_IS_ADDITIVE | MASU_MATERIAL_IS_BLEND);
-#define REFRACTS(t, n, metal, also)                                                                     \
-    (MATERIAL_OF[0].flags |= MASU_MATERIAL_IS_BLEND | (also), MATERIAL_OF[0].thickness = (t), MATERIAL_OF[0].ior = (n), MATERIAL_OF[0].metallic = (metal))
+    LIT("materials", 0,
+        MATERIAL_OF[0].flags =
+            MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_IS_ADDITIVE | MASU_MATERIAL_IS_BLEND);
+#define REFRACTS(t, n, metal, also)                                                                \
+    (MATERIAL_OF[0].flags |= MASU_MATERIAL_IS_BLEND | (also), MATERIAL_OF[0].thickness = (t),      \
+     MATERIAL_OF[0].ior = (n), MATERIAL_OF[0].metallic = (metal))
     LIT("materials", 0, REFRACTS(65536.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED));
     LIT("materials", 0, REFRACTS(1.0f, 0.99f, 0.0f, MASU_MATERIAL_IS_TINTED));
     LIT("materials", 0, REFRACTS(1.0f, 1000.1f, 0.0f, MASU_MATERIAL_IS_TINTED));
-    LIT("materials", 0, REFRACTS(0.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED)); /* an index, and nothing to go through */
+    LIT("materials", 0,
+        REFRACTS(0.0f, 1.5f, 0.0f,
+                 MASU_MATERIAL_IS_TINTED)); /* an index, and nothing to go through */
     LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.0f, 0));
     LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.5f, MASU_MATERIAL_IS_TINTED));
-    LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_HAS_METAL));
+    LIT("materials", 0,
+        REFRACTS(1.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_HAS_METAL));
     LIT("materials", 0, MATERIAL_OF[0].meso = 1);
     LIT("meso", 0, MESO[0].alpha = 4.5f);
     LIT("meso", 0, MESO[0].facet = 1.5f);
@@ -212,7 +222,9 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("lights", 0, LIGHT[0].type = 0x10000);
     LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_SURFACE); /* for a point */
     LIT("lights", 0, LIGHT[0].reserved = 1);
-    LIT("lights", 0, (LIGHT[0].type = MASU_LIGHT_RECTANGLE, LIGHT[0].direction[0] = LIGHT[0].half_axis[0] = 1.0f));
+    LIT("lights", 0,
+        (LIGHT[0].type = MASU_LIGHT_RECTANGLE,
+         LIGHT[0].direction[0] = LIGHT[0].half_axis[0] = 1.0f));
     LIT("lights", 0, LIGHT[0].range = -1.0f);
     LIT("lights", 0, LIGHT[0].range = 2e15f);
     LIT("lights", 0, LIGHT[0].outer = 1.0f); /* for a point */
@@ -951,7 +963,8 @@ static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
         support_accepted(&blob, &scene);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, 0);
     }
-    for (uint32_t timeless = 0; timeless < 2; timeless++) { /* a hand-written field has no such code */
+    for (uint32_t timeless = 0; timeless < 2;
+         timeless++) { /* a hand-written field has no such code */
         masu_scene scene;
         support_blob_write(&blob, SUPPORT_ALL);
         AT(SDF, masu_blob_sdf)->flags = timeless ? MASU_SDF_TIMELESS : 0;

@@ -168,12 +168,13 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
             MATERIAL[0].flags |= 1u << MASU_SLOT_COAT);
     REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_LOBE_MAP); /* it has none */
     REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_COAT_RELIEF);
-    REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 1, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT,
-            MATERIAL[0].more_layers = 0x900);
+    REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 1,
+            MATERIAL[0].flags |= 1u << MASU_SLOT_COAT, MATERIAL[0].more_layers = 0x900);
     REFUSED("materials", 0, MATERIAL[0].more_layers = 0x10000);
     /* the set has no normal map */
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_COAT_SMOOTH);
-    REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH);
+    REFUSED("materials", 0,
+            MATERIAL[0].flags |= MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH);
     ACCEPTED(MATERIAL[0].flags |= MASU_MATERIAL_COAT_SMOOTH);
     ACCEPTED(SET[0].texture[MASU_SLOT_COAT] = 1, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT);
     REFUSED("materials", 0, MATERIAL[0].flags = 0); /* but a layer */

@@ -68,7 +68,8 @@ static int load_features(void **state) {
     free(text);
     write_text("truth.c", features.result.c);
     assert_int_equal(
-        shell("%s -std=c11 -Wall -Wextra -Werror -Wno-unused-function -O1 -shared -fPIC %s -o %s -lm",
+        shell(
+            "%s -std=c11 -Wall -Wextra -Werror -Wno-unused-function -O1 -shared -fPIC %s -o %s -lm",
             c_compiler(), in_scratch("truth.c"), in_scratch("truth.so")),
         0);
     features.library = dlopen(in_scratch("truth.so"), RTLD_NOW);
@@ -362,8 +363,10 @@ static void constants_and_bounds_hold_for_the_C(void **state) {
         const masu_sdfc_part *part = &features.result.parts[i];
         bool estimate = !strcmp(part->name, "mandelbulb");
         for (int n = 0; n < POINTS; n++) {
-            double p[3], q[3], params[2] = {random_between(&seed, 0.2, 1), random_between(&seed, -1, 1)};
-            double time = random_between(&seed, 0, 10), by = pow(10, random_between(&seed, -5, 0.5));
+            double p[3], q[3],
+                params[2] = {random_between(&seed, 0.2, 1), random_between(&seed, -1, 1)};
+            double time = random_between(&seed, 0, 10),
+                   by = pow(10, random_between(&seed, -5, 0.5));
             for (int k = 0; k < 3; k++) p[k] = random_between(&seed, -6, 6);
             for (int k = 0; k < 3; k++) q[k] = p[k] + by * random_between(&seed, -1, 1);
             double f = features.part_distance(params, time, p, (int)i);
@@ -521,28 +524,40 @@ static void blocks_have_bits_for_what_can_be_left_out(void **state) {
         {"part a = blend(0.2, sphere(1), torus(2, 0.1), cylinder(1, 1), box((1, 2, 3)));", 1, 3},
         {"part a = chamfer(0.2, sphere(1), stairs(0.1, 3, torus(2, 0.1), cylinder(1, 1)));", 1, 4},
         {"part a = xor(sphere(1), torus(2, 0.1));", 0, 0},
-        {"for i in 0..8 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 2},
+        {"for i in 0..8 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1,
+         2},
         /* more than 32 bits for all: none */
-        {"for i in 0..20 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 0},
+        {"for i in 0..20 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1,
+         0},
         /* the neighbour cell is evaluated too */
-        {"part a = repeat((9, 0, 0), union(translate((2, 0, 0), sphere(1)), translate((-2, 0, 0), sphere(1))));", 1, 2},
+        {"part a = repeat((9, 0, 0), union(translate((2, 0, 0), sphere(1)), translate((-2, 0, 0), "
+         "sphere(1))));",
+         1, 2},
         {"part a = repeat((9, 0, 9), union(sphere(1), box((1, 2, 3))));", 1, 2},
-        {"part a = repeat((2, 0, 3), union(translate((2, 0, 1), sphere(1)), translate((0.5, 0, 0), box((1, 2, 3)))));", 1, 2},
-        {"part a = repeat_limited((2, 0, 3), (5, 1, 9), union(translate((2, 0, 1), sphere(1)), box((1, 2, 3))));", 1, 2},
+        {"part a = repeat((2, 0, 3), union(translate((2, 0, 1), sphere(1)), translate((0.5, 0, 0), "
+         "box((1, 2, 3)))));",
+         1, 2},
+        {"part a = repeat_limited((2, 0, 3), (5, 1, 9), union(translate((2, 0, 1), sphere(1)), "
+         "box((1, 2, 3))));",
+         1, 2},
         {"part a = repeat((2, 0, 0), torus(1.4, 0.1)); part b = polar(5, box((3, 1, 0.1)));", 1, 0},
         /* a cut skipped in one cell would bring it closer than the cells that are not evaluated */
         {"part a = repeat((4, 0, 4), intersection(box((1.9, 1.9, 1.9)),"
-         " translate((0, 0.2, 0), plane((-0.5, 0.7071, 0.5), 0))));", 0, 0},
+         " translate((0, 0.2, 0), plane((-0.5, 0.7071, 0.5), 0))));",
+         0, 0},
         {"part a = polar(5, translate((9, 0, 0), union(sphere(1), box((1, 2, 3)))));", 0, 0},
         {"part a = twist(0.5, union(sphere(1), box((1, 2, 3))));", 0, 0},
-        {"for i in 0..65 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 2, 0},
+        {"for i in 0..65 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 2,
+         0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         masu_sdfc_result result;
         assert_compiles(cases[i].text, strlen(cases[i].text), &result);
         assert_glsl_compiles(&result);
-        if (result.block_words != cases[i].words || count(result.glsl, "if ((on &") != cases[i].terms) {
-            fail_msg("%s: %u words, %d terms", cases[i].text, result.block_words, count(result.glsl, "if ((on &"));
+        if (result.block_words != cases[i].words ||
+            count(result.glsl, "if ((on &") != cases[i].terms) {
+            fail_msg("%s: %u words, %d terms", cases[i].text, result.block_words,
+                     count(result.glsl, "if ((on &"));
         }
         masu_sdfc_release(&result);
     }
@@ -601,20 +616,28 @@ static void parts_that_move_are_told_from_those_that_rest(void **state) {
     static const struct {
         const char *text;
         int some, flat;
-    } cases[] = {
-        {"part a = sphere(1); part b = translate((3, 0, 0), box((1, 1, 1))); part c = plane((0, 1, 0), 2);", 0, 0},
-        {"part a = sphere(1); part b = translate((sin(time), 0, 0), sphere(1)); part c = box((1, 1, 1));"
-         "part d = plane((0, 1, 0), 2);", 1, 0},
-        {"param r = 1 [0.5, 2]; part a = sphere(1); part b = torus(r, 0.1); part c = rotate((0, 1, 0), time, "
-         "box((1, 1, 1))); part e = union(sphere(1), translate((r, 0, 0), sphere(0.1)));", 1, 0},
-        {"part a = sphere(1); part b = plane((0, 1, 0), 0.1 * time);", 1, 1},
-        {"part a = sphere(1); part b = glsl { return length(p) - 1.0 - 0.1 * masu_time(); } bounds (-2, -2, -2), (2, 2, 2) lipschitz 1;", 1, 0}};
+    } cases[] = {{"part a = sphere(1); part b = translate((3, 0, 0), box((1, 1, 1))); part c = "
+                  "plane((0, 1, 0), 2);",
+                  0, 0},
+                 {"part a = sphere(1); part b = translate((sin(time), 0, 0), sphere(1)); part c = "
+                  "box((1, 1, 1));"
+                  "part d = plane((0, 1, 0), 2);",
+                  1, 0},
+                 {"param r = 1 [0.5, 2]; part a = sphere(1); part b = torus(r, 0.1); part c = "
+                  "rotate((0, 1, 0), time, "
+                  "box((1, 1, 1))); part e = union(sphere(1), translate((r, 0, 0), sphere(0.1)));",
+                  1, 0},
+                 {"part a = sphere(1); part b = plane((0, 1, 0), 0.1 * time);", 1, 1},
+                 {"part a = sphere(1); part b = glsl { return length(p) - 1.0 - 0.1 * masu_time(); "
+                  "} bounds (-2, -2, -2), (2, 2, 2) lipschitz 1;",
+                  1, 0}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         masu_sdfc_result result;
         char wanted[64];
         uint32_t bits = 0;
         assert_compiles(cases[k].text, strlen(cases[k].text), &result);
-        snprintf(wanted, sizeof wanted, "#define MASU_SDF_MOVING %d\n#define MASU_SDF_MOVING_FLAT %d\n", cases[k].some,
+        snprintf(wanted, sizeof wanted,
+                 "#define MASU_SDF_MOVING %d\n#define MASU_SDF_MOVING_FLAT %d\n", cases[k].some,
                  cases[k].flat);
         if (count(result.glsl, wanted) != 1) fail_msg("%s: not %s", cases[k].text, wanted);
         const char *body = strstr(result.glsl, "bool masu_sdf_part_moves(uint part)");
@@ -625,7 +648,8 @@ static void parts_that_move_are_told_from_those_that_rest(void **state) {
             int moves = result.parts[i].dynamic || result.parts[i].user;
             snprintf(wanted, sizeof wanted, " %uu ", i);
             int alone = (i == 0 || !(result.parts[i - 1].dynamic || result.parts[i - 1].user)) &&
-                        (i + 1 == result.part_count || !(result.parts[i + 1].dynamic || result.parts[i + 1].user));
+                        (i + 1 == result.part_count ||
+                         !(result.parts[i + 1].dynamic || result.parts[i + 1].user));
             if (!moves) assert_null(strstr(asked, wanted));
             if (moves && alone) {
                 snprintf(wanted, sizeof wanted, "part == %uu ", i);
@@ -679,7 +703,8 @@ static void the_least_roughness_of_what_is_lit_is_known(void **state) {
                          "material m { %s } part a : m = sphere(1);",
                          cases[i].material);
         masu_sdfc_options options = {.pairs = UINT32_MAX};
-        if (!masu_sdfc_compile_with(text, (size_t)n, "x.sdf", &options, &result, error, sizeof error))
+        if (!masu_sdfc_compile_with(text, (size_t)n, "x.sdf", &options, &result, error,
+                                    sizeof error))
             fail_msg("%s: %s", cases[i].material, error);
         if (fabs(result.glossiest - cases[i].least) > 1e-12)
             fail_msg("%s: %g", cases[i].material, result.glossiest);
@@ -695,8 +720,9 @@ static void mistakes_name_their_place(void **state) {
         {"", "x.sdf:1:1: expected a part, found the end of the text"},
         {"part a = sphere(1)", "x.sdf:1:19: expected \";\", found the end of the text\n"
                                "part a = sphere(1)\n                  ^"},
-        {"let a = 1;\npart b = spher(1);", "x.sdf:2:10: expected a shape, found \"spher\": did you mean \"sphere\"?\n"
-                                           "part b = spher(1);\n         ^"},
+        {"let a = 1;\npart b = spher(1);",
+         "x.sdf:2:10: expected a shape, found \"spher\": did you mean \"sphere\"?\n"
+         "part b = spher(1);\n         ^"},
         {"part a = box(1, 2);", "x.sdf:1:15: expected \")\", found \",\""},
         {"part a = sphere((1, 2, 3));", "x.sdf:1:17: expected a number, found three numbers"},
         {"part a : gold = sphere(1);", "x.sdf:1:10: expected a material, found \"gold\""},
@@ -706,36 +732,44 @@ static void mistakes_name_their_place(void **state) {
         {"part a = menger(time);", "x.sdf:1:17: expected a whole number known at compile time, "
                                    "found an expression of parameters or time"},
         {"let pi = 3;", "x.sdf:1:5: expected a name that is not a keyword, found \"pi\""},
-        {"let a = 1; let a = 2;", "x.sdf:1:16: expected a name that is not declared yet, found \"a\""},
+        {"let a = 1; let a = 2;",
+         "x.sdf:1:16: expected a name that is not declared yet, found \"a\""},
         {"let a = 1 / 0;", "x.sdf:1:13: expected a divisor, found 0"},
         {"let a = $;", "x.sdf:1:9: expected a statement, found \"$\""},
         {"let a = 1e99;", "x.sdf:1:9: expected a number of at most 1e30"},
         {"part a = repeat((2, 0, 0), translate((0.6, 0, 0), sphere(3.1)));",
-         "x.sdf:1:10: repeat: the shape reaches 3.7 from the centre of its cell along x: expected at most 3.6, 1.8 times "
+         "x.sdf:1:10: repeat: the shape reaches 3.7 from the centre of its cell along x: expected "
+         "at most 3.6, 1.8 times "
          "the period"},
         {"part a = repeat_limited((0, 0, 2), (1, 1, 5), torus(4, 0.1));",
-         "x.sdf:1:10: repeat_limited: the shape reaches 4.1 from the centre of its cell along z: expected at most 4, 2 "
+         "x.sdf:1:10: repeat_limited: the shape reaches 4.1 from the centre of its cell along z: "
+         "expected at most 4, 2 "
          "times the period"},
         {"part a = repeat((2, 0, 0), difference(plane((0, 1, 0), 0), sphere(0.5)));",
-         "x.sdf:1:10: repeat: the shape reaches inf from the centre of its cell along x: expected at most 4"},
-        {"part a = polar(20, box((3, 1, 0.1)));",
-         "x.sdf:1:10: polar: the shape covers 180 degrees on either side of +x: expected at most 144"},
+         "x.sdf:1:10: repeat: the shape reaches inf from the centre of its cell along x: expected "
+         "at most 4"},
+        {"part a = polar(20, box((3, 1, 0.1)));", "x.sdf:1:10: polar: the shape covers 180 degrees "
+                                                  "on either side of +x: expected at most 144"},
         {"part a = polar(20, translate((3, 0, 0.4), box((0.2, 0.2, 1))));",
-         "x.sdf:1:10: polar: the shape covers 26.57 degrees on either side of +x: expected at most 14.4"},
+         "x.sdf:1:10: polar: the shape covers 26.57 degrees on either side of +x: expected at most "
+         "14.4"},
         {"part a = twist(1, plane((0, 1, 0), 0));",
          "x.sdf:1:10: twist: expected a bounded shape and a bounded rate"},
         {"part a = bend(2, box((1.6, 0.1, 1)));",
          "x.sdf:1:10: bend: x reaches 1.6, which the rate turns by 3.2: expected at most 3.14"},
         {"part a = bend(1, box((1.6, 1, 1)));",
-         "x.sdf:1:10: bend: y times the rate reaches 1: expected at most 0.99, inside the centre of the arc"},
+         "x.sdf:1:10: bend: y times the rate reaches 1: expected at most 0.99, inside the centre "
+         "of the arc"},
         {"part a = rotate((0, 0, 0), 1, sphere(1));",
          "x.sdf:1:10: rotate: expected an axis that is not zero"},
-        {"param k = 0.5 [0, 1]; part a = glsl { return length(p) - masu_param(1); } bounds (-1, -1, -1), (1, 1, 1) "
+        {"param k = 0.5 [0, 1]; part a = glsl { return length(p) - masu_param(1); } bounds (-1, "
+         "-1, -1), (1, 1, 1) "
          "lipschitz 1;",
          "x.sdf:1:32: masu_param(1): the scene has 1 parameter, counted from 0"},
         {"part a = glsl { return 1.0; ", "x.sdf:1:15: expected a \"}\" for this \"{\""},
-        {"for i in 0..9 { part a = sphere(1);", "x.sdf:1:36: expected param, let, shape, def, material, "
-                                                "part or for, found the end of the text"},
+        {"for i in 0..9 { part a = sphere(1);",
+         "x.sdf:1:36: expected param, let, shape, def, material, "
+         "part or for, found the end of the text"},
         {"for i in 0..5000 { part a = sphere(1); }", "x.sdf:1:27: more than 4096 parts"},
         {"for i in 0..60000 { for j in 0..60000 { } }", "x.sdf:1:"},
     };
@@ -790,11 +824,16 @@ static void put_solid(writer *w, int depth) {
     case 8: put(w, "octahedron(%.3f)", a); return;
     case 9: put(w, "tri_prism(%.3f, %.3f)", a, b); return;
     case 10: put(w, "ellipsoid((%.3f, %.3f, %.3f))", a, c, b); return;
-    case 11: put(w, "translate((%.3f, %.3f, %.3f), ", size(w, -0.6, 0.6), b, size(w, -0.6, 0.6)); break;
+    case 11:
+        put(w, "translate((%.3f, %.3f, %.3f), ", size(w, -0.6, 0.6), b, size(w, -0.6, 0.6));
+        break;
     case 12: put(w, "rotate((%d, 1, 0), %.3f, ", whole(w, 0, 1), a); break;
     case 13: put(w, "mirror((1, 0, 0), "); break;
     case 14: put(w, "onion(%.3f, ", b / 3); break;
-    case 15: put(w, "repeat_limited((%.3f, 0, %.3f), (%d, 1, %d), ", a, a + c, whole(w, 1, 4), whole(w, 1, 3)); break;
+    case 15:
+        put(w, "repeat_limited((%.3f, 0, %.3f), (%d, 1, %d), ", a, a + c, whole(w, 1, 4),
+            whole(w, 1, 3));
+        break;
     case 16: put(w, "scale((1, 2, %.3f), ", a); break;
     case 17: put(w, "union("); break;
     case 18: put(w, "difference("); break;
@@ -819,7 +858,8 @@ typedef struct rows {
 static double union_of_copies(const field *r, const rows *of, const double p[3]) {
     double least = 1e30;
     for (int i = 0; i < of->around; i++) {
-        double a = 2 * PI * i / of->around, q[3] = {p[0] * cos(a) + p[2] * sin(a), p[1], p[2] * cos(a) - p[0] * sin(a)};
+        double a = 2 * PI * i / of->around,
+               q[3] = {p[0] * cos(a) + p[2] * sin(a), p[1], p[2] * cos(a) - p[0] * sin(a)};
         least = fmin(least, field_value(r, 1, q));
     }
     if (of->around) return least;
@@ -836,7 +876,8 @@ static double union_of_copies(const field *r, const rows *of, const double p[3])
                 const int cell[3] = {x, y, z};
                 double q[3];
                 for (int k = 0; k < 3; k++) {
-                    q[k] = p[k] - of->period[k] * (cell[k] - (of->count[k] ? (of->count[k] - 1) / 2.0 : 0));
+                    q[k] = p[k] - of->period[k] *
+                                      (cell[k] - (of->count[k] ? (of->count[k] - 1) / 2.0 : 0));
                 }
                 least = fmin(least, field_value(r, 1, q));
             }
@@ -857,9 +898,11 @@ static void put_rows(writer *w, rows *of, int form) {
         of->period[k] = floor(size(w, 500, 3000)) / 1000;
         of->count[k] = form == 1 ? whole(w, 1, 6) : 0;
     }
-    put(w, form ? "repeat_limited((%.3f, %.3f, %.3f), " : "repeat((%.3f, %.3f, %.3f), ", of->period[0], of->period[1],
-        of->period[2]);
-    if (form) put(w, "(%d, %d, %d), ", of->count[0] ? of->count[0] : 1, of->count[1] ? of->count[1] : 1, of->count[2] ? of->count[2] : 1);
+    put(w, form ? "repeat_limited((%.3f, %.3f, %.3f), " : "repeat((%.3f, %.3f, %.3f), ",
+        of->period[0], of->period[1], of->period[2]);
+    if (form)
+        put(w, "(%d, %d, %d), ", of->count[0] ? of->count[0] : 1, of->count[1] ? of->count[1] : 1,
+            of->count[2] ? of->count[2] : 1);
 }
 
 /* Solid where the union is and nowhere else, no solid closer than f / L, and the constant holds. */
@@ -881,18 +924,20 @@ static void compare_copies(const char *text, const field *r, const rows *of, uin
         }
         double length = len(way[0], way[1], way[2]);
         if (fabs(u) > 1e-9 && fabs(f) > 1e-9 && (f < 0) != (u < 0)) {
-            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), the union of the copies %.17g", text, f, p[0], p[1], p[2], u);
+            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), the union of the copies %.17g", text, f,
+                     p[0], p[1], p[2], u);
         }
         double step = n % 3 ? f / L : pow(10, random_between(seed, -6, 0));
         for (int k = 0; k < 3; k++) q[k] = p[k] + way[k] / length * step * 0.999999;
         double g = field_value(r, 0, q);
         if (fabs(f - g) > L * apart(p, q) * (1 + 1e-9) + 1e-9) {
-            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), %.17g at (%.17g, %.17g, %.17g), constant %g", text, f, p[0],
-                     p[1], p[2], g, q[0], q[1], q[2], L);
+            fail_msg(
+                "%s: %.17g at (%.17g, %.17g, %.17g), %.17g at (%.17g, %.17g, %.17g), constant %g",
+                text, f, p[0], p[1], p[2], g, q[0], q[1], q[2], L);
         }
         if (n % 3 && f > 1e-6 && union_of_copies(r, of, q) < -1e-9) {
-            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), but (%.17g, %.17g, %.17g) is solid", text, f, p[0], p[1], p[2],
-                     q[0], q[1], q[2]);
+            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), but (%.17g, %.17g, %.17g) is solid", text,
+                     f, p[0], p[1], p[2], q[0], q[1], q[2]);
         }
     }
 }
@@ -907,7 +952,9 @@ static void repetitions_are_the_union_of_their_copies(void **state) {
         {"repeat((2, 0, 2), ", "translate((0.6, 0, 0), sphere(0.6))", {{2, 0, 2}, {0}, 0}},
         {"repeat((1, 0, 0), ", "translate((0.7, 0, 0), sphere(0.1))", {{1, 0, 0}, {0}, 0}},
         {"repeat_limited((2, 0, 2), (3, 1, 2), ", "torus(1.4, 0.1)", {{2, 0, 2}, {3, 1, 2}, 0}},
-        {"repeat_limited((1, 1, 1), (2, 4, 3), ", "translate((0, 1, 4), torus(3, 0.1))", {{1, 1, 1}, {2, 4, 3}, 0}},
+        {"repeat_limited((1, 1, 1), (2, 4, 3), ",
+         "translate((0, 1, 4), torus(3, 0.1))",
+         {{1, 1, 1}, {2, 4, 3}, 0}},
         {"polar(12, ", "translate((3, 0, 0), torus(2, 0.1))", {{0}, {0}, 12}},
         {"polar(6, ", "translate((-3, 0, 0), sphere(0.3))", {{0}, {0}, 6}},
         {"polar(5, ", "box((3, 1, 0.1))", {{0}, {0}, 5}},
@@ -940,7 +987,8 @@ static void repetitions_are_the_union_of_their_copies(void **state) {
         }
         put(&w, "%s); part b = %s;", child, child);
         if (!field_start(&r, w.text)) {
-            if (i < CASES || !(strstr(r.error, "reaches") || strstr(r.error, "covers"))) fail_msg("%s: %s", w.text, r.error);
+            if (i < CASES || !(strstr(r.error, "reaches") || strstr(r.error, "covers")))
+                fail_msg("%s: %s", w.text, r.error);
             continue;
         }
         compare_copies(w.text, &r, &of, &w.seed);
@@ -958,13 +1006,16 @@ static void the_bounds_of_a_blend_are_those_of_equal_operands(void **state) {
     } cases[] = {
         {"part a = smooth_union(1, sphere(1), sphere(1));", 1.25},
         {"part a = smooth_union(1, sphere(1), sphere(1), sphere(1));", 1.390625},
-        {"part a = smooth_union(1, sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), "
-         "sphere(1), sphere(1), sphere(1));", 1.7222},
+        {"part a = smooth_union(1, sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), "
+         "sphere(1), sphere(1), "
+         "sphere(1), sphere(1), sphere(1));",
+         1.7222},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         masu_sdfc_result result;
         assert_compiles(cases[i].text, strlen(cases[i].text), &result);
-        if (fabs(result.parts[0].radius - cases[i].radius) > 1e-5) fail_msg("%s: %g", cases[i].text, result.parts[0].radius);
+        if (fabs(result.parts[0].radius - cases[i].radius) > 1e-5)
+            fail_msg("%s: %g", cases[i].text, result.parts[0].radius);
         masu_sdfc_release(&result);
     }
 }
@@ -986,7 +1037,8 @@ static void a_bend_is_as_steep_as_its_inner_side(void **state) {
         masu_sdfc_result result;
         assert_compiles(cases[i].text, strlen(cases[i].text), &result);
         double found = result.parts[0].lipschitz / cases[i].lipschitz;
-        if (!(found > 1 - 1e-9 && found < 1.0011)) fail_msg("%s: %g", cases[i].text, result.parts[0].lipschitz);
+        if (!(found > 1 - 1e-9 && found < 1.0011))
+            fail_msg("%s: %g", cases[i].text, result.parts[0].lipschitz);
         masu_sdfc_release(&result);
     }
 }
@@ -1091,10 +1143,13 @@ static void cameras_inside_of_parts_are_told(void **state) {
                  {{{0.51, 0, 0}, 0}, ""},
                  {{{9, -2.5, 9}, 0}, "inside part \"floor\""}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        masu_sdfc_options options = {.pairs = UINT32_MAX, .cameras = &cases[i].camera, .camera_count = 1};
+        masu_sdfc_options options = {
+            .pairs = UINT32_MAX, .cameras = &cases[i].camera, .camera_count = 1};
         masu_sdfc_result result;
         char error[1024];
-        if (!masu_sdfc_compile_with(text, sizeof text - 1, "x.sdf", &options, &result, error, sizeof error)) fail_msg("%s", error);
+        if (!masu_sdfc_compile_with(text, sizeof text - 1, "x.sdf", &options, &result, error,
+                                    sizeof error))
+            fail_msg("%s", error);
         if (!strstr(result.warnings, cases[i].warning) || !*cases[i].warning != !*result.warnings)
             fail_msg("case %zu: %s", i, result.warnings);
         masu_sdfc_release(&result);

@@ -293,7 +293,8 @@ static void the_hash_mixes(void **state) {
     }
     double worst = 0;
     for (int b = 0; b < 32; b++) {
-        for (int k = 0; k < 32; k++) worst = worst_of(worst, fabs((double)turned[b][k] / MANY - 0.5));
+        for (int k = 0; k < 32; k++)
+            worst = worst_of(worst, fabs((double)turned[b][k] / MANY - 0.5));
     }
     print_message("  a bit of x flips a bit of the hash with 0.5 +- %.3f\n", worst);
     assert_true(worst < 0.05); /* random error: 4.5 deviations of 0.0078 */

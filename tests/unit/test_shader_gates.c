@@ -191,7 +191,8 @@ static const struct {
     {"update.comp", "-DMASU_PASS=1", 1, 1, 0},
     {"update.comp", "-DMASU_MOTION=1", 1, 1, 0},
     {"sdf_velocity.comp", "-DMASU_PASS=1", 2, 0, 2},
-    {"silhouettes.comp", "-DMASU_PASS=1", 2, 0, 6}, /* sides, rays and their march, the normal, reference pixels, light */
+    {"silhouettes.comp", "-DMASU_PASS=1", 2, 0,
+     6}, /* sides, rays and their march, the normal, reference pixels, light */
     {"classify.comp", "-DMASU_PASS=1", 2, 0, 1},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", 1, 0, 1},
     {"cone.comp", "-DMASU_CONE_BLOCK=2", 1, 0, 1},
@@ -285,8 +286,9 @@ static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
             (void)snprintf(path, sizeof path, "shaders/%s", scene_shaders[i].source);
             (void)snprintf(name, sizeof name, "%s %s with %s", scene_shaders[i].source,
                            scene_shaders[i].define, field);
-            (void)snprintf(options, sizeof options, "-Ishaders -I%s/gen -I. -I%s -DMASU_HAS_RASTER=%d %s",
-                           made_dir(), scratch, raster, scene_shaders[i].define);
+            (void)snprintf(options, sizeof options,
+                           "-Ishaders -I%s/gen -I. -I%s -DMASU_HAS_RASTER=%d %s", made_dir(),
+                           scratch, raster, scene_shaders[i].define);
             if (!spirv_compile(path, options, &m)) fail_msg("%s does not compile", name);
             uint32_t found = assert_passes(&m, name);
             if (found < scene_shaders[i].loops) fail_msg("%s: %u loops only", name, found);

@@ -63,7 +63,8 @@ static void splits_rise_and_end_at_the_distance(void **state) {
     (void)state;
     uint64_t r = 2;
     for (int i = 0; i < 1000; i++) {
-        double near_distance = random_between(&r, 1e-6, 10), distance = random_between(&r, 1e-3, 1000);
+        double near_distance = random_between(&r, 1e-6, 10),
+               distance = random_between(&r, 1e-3, 1000);
         double lambda = random_between(&r, 0, 1), last = 0;
         uint32_t n = (uint32_t)support_random_in(&r, 1, 4);
         for (uint32_t k = 0; k < n; k++) {
@@ -85,7 +86,8 @@ static void far_near_planes_waste_no_texels(void **state) {
     assert_true(masu_shadow_begin(1, 2) == 0);
     assert_true(masu_shadow_begin(1.001, 2) == 1.001);
     assert_true(masu_shadow_begin(3, 2) == 2);
-    masu_shadow_view v = {.forward = {0, 0, -1}, .sun = {0, 1, 0}, .casters = {{-1, -1, -1}, {1, 1, 1}}};
+    masu_shadow_view v = {
+        .forward = {0, 0, -1}, .sun = {0, 1, 0}, .casters = {{-1, -1, -1}, {1, 1, 1}}};
     for (int tip = 0; tip < 2; tip++) { /* an image 4 m high, 10 m of it */
         v.tan2 = 2 * 0.0005 * 0.0005;
         v.begin = tip ? 0 : 3995;
@@ -185,7 +187,8 @@ static void what_a_cascade_still_holds_is_told(void **state) {
         if (across > 0.17 * drawn.radius) assert_false(holds);
     }
     /* Along the sun's direction: away from it up to the map's depth, and towards it. */
-    const double away[] = {-0.4 * drawn.radius, -0.05 * drawn.radius, 0.05 * drawn.radius, drawn.ahead};
+    const double away[] = {-0.4 * drawn.radius, -0.05 * drawn.radius, 0.05 * drawn.radius,
+                           drawn.ahead};
     for (int i = 0; i < 4; i++) {
         masu_shadow_view next = v;
         for (int j = 0; j < 3; j++) next.eye[j] += drawn.axis[2][j] * away[i];

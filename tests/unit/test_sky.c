@@ -137,7 +137,8 @@ static void integrate_lobe(const double n[3], double roughness, double out[3]) {
 static void mirrors_are_near_the_sky_averaged_by_the_lobe(void **state) {
     (void)state;
     static const double elevations[] = {-3, 0.5, 5, 15, 40, 80}, turbidities[] = {2, 4, 8};
-    static const double bounds[] = {0.012, 0.065, 0.105, 0.105, 0.11, 0.093, 0.065, 0.048, 0.025, 0.02};
+    static const double bounds[] = {0.012, 0.065, 0.105, 0.105, 0.11,
+                                    0.093, 0.065, 0.048, 0.025, 0.02};
     for (int i = 0; i < 10; i++) {
         double roughness = 0.1 * (i + 1), sum = 0, worst = 0;
         for (int k = 0; k < 18; k++) {
@@ -232,9 +233,10 @@ static jumps sunrise(float turbidity, double from, double step, int steps) {
         if (i > 0) compare(&before, &now, &j);
         before = now;
     }
-    print_message("turbidity %g, steps of %g degrees: of the brightest: radiance %.4f, coefficients "
-                  "%.4f; a single direction %.3f; the sun %.4f\n",
-                  (double)turbidity, step, j.radiance, j.coefficients, j.single, j.sun);
+    print_message(
+        "turbidity %g, steps of %g degrees: of the brightest: radiance %.4f, coefficients "
+        "%.4f; a single direction %.3f; the sun %.4f\n",
+        (double)turbidity, step, j.radiance, j.coefficients, j.single, j.sun);
     return j;
 }
 

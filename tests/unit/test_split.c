@@ -32,7 +32,9 @@ static void assert_refused(masu_desc *d, uint32_t split, const char *text) {
     if (!strstr(detail.text, text)) fail_msg("\"%s\" is not in \"%s\"", text, detail.text);
 }
 
-static int runs(const masu_frame_plan *p, uint32_t pass) { return masu_first_rung(p, pass) != NULL; }
+static int runs(const masu_frame_plan *p, uint32_t pass) {
+    return masu_first_rung(p, pass) != NULL;
+}
 
 static int has_access(const masu_frame_plan *p, uint32_t pass, uint32_t image, masu_usage usage) {
     const masu_rung_plan *rp = masu_first_rung(p, pass);
@@ -49,7 +51,8 @@ static void what_makes_no_sense_is_refused(void **state) {
     assert_refused(&d, UINT32_MAX, "allowed are 0 to 15");
     assert_refused(&d, KEEP, "MASU_SPLIT_KEEP keeps for MASU_SPLIT_AFTER_UPSCALE");
     assert_refused(&d, TONE | KEEP, "MASU_SPLIT_KEEP keeps for MASU_SPLIT_AFTER_UPSCALE");
-    assert_refused(&d, VELOCITY, "MASU_SPLIT_VELOCITY takes MASU_SPLIT_BEFORE_TONE or MASU_SPLIT_KEEP");
+    assert_refused(&d, VELOCITY,
+                   "MASU_SPLIT_VELOCITY takes MASU_SPLIT_BEFORE_TONE or MASU_SPLIT_KEEP");
     assert_refused(&d, OUTPUT | VELOCITY, "MASU_SPLIT_VELOCITY takes");
     masu_desc source = source_desc(64, 36);
     assert_refused(&source, TONE, "without a scene there is MASU_SPLIT_AFTER_UPSCALE alone");
@@ -74,9 +77,10 @@ static void without_a_split_nothing_is_planned(void **state) {
         for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
             const masu_image_plan *image = &plan.images[i];
             if (!image->used) continue;
-            int attached = i == MASU_IMAGE_DEPTH || i == MASU_IMAGE_ALBEDO || i == MASU_IMAGE_NORMAL ||
-                           i == MASU_IMAGE_SHADOW_MAP || i == MASU_IMAGE_OCCLUDERS ||
-                           i == MASU_IMAGE_VELOCITY || i == MASU_IMAGE_SURFACE;
+            int attached = i == MASU_IMAGE_DEPTH || i == MASU_IMAGE_ALBEDO ||
+                           i == MASU_IMAGE_NORMAL || i == MASU_IMAGE_SHADOW_MAP ||
+                           i == MASU_IMAGE_OCCLUDERS || i == MASU_IMAGE_VELOCITY ||
+                           i == MASU_IMAGE_SURFACE;
             if (!attached) assert_int_equal(image->usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0);
             assert_int_equal(image->usage & VK_IMAGE_USAGE_TRANSFER_SRC_BIT, 0);
         }
@@ -117,7 +121,8 @@ static void images_are_there_for_the_host_and_alive(void **state) {
         assert_true(has_access(&plan, MASU_PASS_SPLIT_OUTPUT, MASU_IMAGE_FINAL, MASU_HOST_COLOR));
         assert_int_equal(plan.rungs[0].access_count[MASU_PASS_SPLIT_OUTPUT], 1);
         assert_true(plan.images[MASU_IMAGE_HDR].last < MASU_PASS_SPLIT_OUTPUT);
-        assert_int_equal(plan.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0);
+        assert_int_equal(plan.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+                         0);
 
         d.split = MASU_SPLIT_ALL;
         compile(&d, &plan);
@@ -141,7 +146,8 @@ static void the_last_pass_stays_the_last(void **state) {
         compile(&d, &plan);
         for (uint32_t r = 0; r < plan.desc.rung_count; r++) {
             for (uint32_t p = 0; p < MASU_PASS_COUNT; p++)
-                assert_int_equal(masu_comes_last(&plan.rungs[r], p), masu_comes_last(&other.rungs[r], p));
+                assert_int_equal(masu_comes_last(&plan.rungs[r], p),
+                                 masu_comes_last(&other.rungs[r], p));
         }
         uint32_t shown = storage ? MASU_IMAGE_TARGET : MASU_IMAGE_FINAL;
         assert_true(has_access(&plan, MASU_PASS_SPLIT_OUTPUT, shown, MASU_HOST_COLOR));

@@ -268,7 +268,8 @@ static void corners_of(uint32_t i, const double anchor[3], double low[3], double
 static void assert_top(const double anchor[3], uint32_t live) {
     assert_int_equal(top.live, live);
     assert_true(top.nodes <= masu_trace_tree_nodes(live));
-    assert_true(top.depth <= masu_trace_top_levels(top.count) && masu_trace_top_levels(top.count) <= MASU_TRACE_TOP_DEPTH);
+    assert_true(top.depth <= masu_trace_top_levels(top.count) &&
+                masu_trace_top_levels(top.count) <= MASU_TRACE_TOP_DEPTH);
     unsigned char *seen = calloc(live + 1, 1);
     uint32_t depth = 0;
     if (live) {

@@ -345,7 +345,8 @@ static void rays_see_textures_repeated_held_and_mirrored(void **state) {
     float *uv = MASU_BAKE_ARRAY(&c, MASU_BLOB_TEXCOORDS, float);
     uint64_t count = masu_bake_count(&c, MASU_BLOB_TEXCOORDS);
     for (uint64_t i = 0; i < count; i++) uv[2 * i] = 3.0f * uv[2 * i] - 1.0f;
-    masu_blob_texture_set *sets = MASU_BAKE_ARRAY(&c, MASU_BLOB_TEXTURE_SETS, masu_blob_texture_set);
+    masu_blob_texture_set *sets =
+        MASU_BAKE_ARRAY(&c, MASU_BLOB_TEXTURE_SETS, masu_blob_texture_set);
     for (uint32_t wrap = 0; wrap < 3; wrap++) {
         for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_TEXTURE_SETS); i++)
             sets[i].wrap[0] = (uint8_t)wrap;

@@ -107,7 +107,8 @@ static void every_shader_comes_back_to_the_byte(void **state) {
         snprintf(path, sizeof path, "%s/gen/%s.opt.spv", made_dir(), all[i].name);
         uint32_t *words = read_file(path, &bytes);
         trial t = begin(&all[i].packed);
-        if (bytes != all[i].packed.words * sizeof *words || !unpack(&t) || memcmp(words, t.words.at, bytes))
+        if (bytes != all[i].packed.words * sizeof *words || !unpack(&t) ||
+            memcmp(words, t.words.at, bytes))
             fail_msg("%s differs from %s", all[i].name, path);
         end(&t);
         free(words);
@@ -116,7 +117,8 @@ static void every_shader_comes_back_to_the_byte(void **state) {
 
 static void they_take_a_tenth(void **state) {
     (void)state;
-    uint64_t bytes = 0, packed = sizeof masu_pack_pool + sizeof masu_pack_runs + sizeof masu_pack_heads;
+    uint64_t bytes = 0,
+             packed = sizeof masu_pack_pool + sizeof masu_pack_runs + sizeof masu_pack_heads;
     for (uint32_t i = 0; i < COUNT; i++) bytes += all[i].packed.words * sizeof(uint32_t);
     print_message("%llu bytes in %llu\n", (unsigned long long)bytes, (unsigned long long)packed);
     assert_true(packed * 10 < bytes);

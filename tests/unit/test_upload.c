@@ -65,8 +65,8 @@ static void chunks_of_any_size_add_up_to_the_scene(void **state) {
             masu_chunk chunk = masu_load_chunk(&m.plan, submitted);
             assert_ptr_equal(commands.buffer, loads[submitted]);
             assert_true(chunk.bytes > 0 && chunk.bytes <= staging);
-            assert_true(chunk.buffer <= MASU_BUFFER_MATERIALS || chunk.buffer == MASU_BUFFER_SLOTS ||
-                        chunk.buffer == MASU_BUFFER_TABLES);
+            assert_true(chunk.buffer <= MASU_BUFFER_MATERIALS ||
+                        chunk.buffer == MASU_BUFFER_SLOTS || chunk.buffer == MASU_BUFFER_TABLES);
             assert_true(chunk.offset + chunk.bytes <= m.plan.buffers[chunk.buffer].bytes);
             memcpy(copy[chunk.buffer] + chunk.offset, slot_bytes(MASU_BUFFER_STAGING, 0),
                    (size_t)chunk.bytes);
@@ -259,7 +259,8 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
                                 v.instances[i].transform, size);
         }
     }
-    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 1), rows, &failure), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 1), rows, &failure),
+                     MASU_OK);
     for (uint32_t frame = 0; frame < 4; frame++) { /* slots alternate */
         unsigned char *to = masu_buffer_pointer(&m.device, MASU_BUFFER_INSTANCES, frame % 2);
         memset(to, NOISE, 3 * size);
@@ -284,7 +285,8 @@ static void a_moved_instance_reaches_as_many_slots_as_there_are(void **state) {
             make_renderer(SUPPORT_ALL, 0);
             m.plan.desc.frames_in_flight = flight;
             m.plan.needs.velocity = velocity;
-            m.plan.buffers[MASU_BUFFER_INSTANCES].stride = 2 * 4 * sizeof(struct masu_instance_data);
+            m.plan.buffers[MASU_BUFFER_INSTANCES].stride =
+                2 * 4 * sizeof(struct masu_instance_data);
             masu_scene_view v = masu_scene_view_of(&scene);
             masu_instances_copy_scene(&m.instances, &m.plan, &v);
             for (uint32_t n = 0; n < flight + velocity; n++) {
@@ -309,7 +311,8 @@ static void moving_twice_before_a_frame_keeps_the_last(void **state) {
     for (uint32_t slot = 0; slot < 2; slot++) write_instances(slot);
     for (int n = 1; n <= 5; n++) {
         rows[3] = (float)n;
-        assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 2), rows, &failure), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 2), rows, &failure),
+                         MASU_OK);
     }
     for (uint32_t slot = 0; slot < 2; slot++) {
         struct masu_instance_data got;
@@ -337,8 +340,9 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
             float bad[12];
             memcpy(bad, good, sizeof bad);
             bad[k] = not_finite[i];
-            assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 0), bad, &failure),
-                             MASU_ERROR_ARGUMENT);
+            assert_int_equal(
+                masu_instance_set_transform(&m, masu_instance_at(&m, 0), bad, &failure),
+                MASU_ERROR_ARGUMENT);
             assert_int_equal(failure.given, k);
         }
     }
@@ -357,7 +361,8 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
 static int looks_for_changes(uint32_t parts, double step) {
     masu_rung rung = {.scale = 0.5f, .temporal = MASU_ON, .lod_error = -1.0f};
     make_renderer_with(parts, 0, &rung, 1);
-    masu_camera camera = {.position = {0, 1, 5}, .forward = {0, 0, -1}, .fov_y = 1, .near_distance = 0.1f};
+    masu_camera camera = {
+        .position = {0, 1, 5}, .forward = {0, 0, -1}, .fov_y = 1, .near_distance = 0.1f};
     for (uint32_t n = 0; n < 40; n++) {
         masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .time = 1 + n * step};
         (void)write_good(&f, n % 2);
@@ -379,7 +384,8 @@ static void an_lod_is_chosen_once_for_all_views(void **state) {
     (void)state;
     masu_rung rung = {.scale = 1.0f, .lod_error = 1.0f};
     make_renderer_with(SUPPORT_RASTER | SUPPORT_SHADOW | SUPPORT_DETAIL, 0, &rung, 1);
-    masu_camera camera = {.position = {0, 1, 5}, .forward = {0, 0, -1}, .fov_y = 1, .near_distance = 0.1f};
+    masu_camera camera = {
+        .position = {0, 1, 5}, .forward = {0, 0, -1}, .fov_y = 1, .near_distance = 0.1f};
     masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera};
     (void)write_good(&f, 0);
     uint32_t instances = 0, listed = 0;
@@ -405,11 +411,15 @@ static void times_of_a_clock_that_wraps_are_right(void **state) {
         m.plan.readback_times = 0;
         m.device.queries = FAKE(VkQueryPool, 1);
         m.device.vk.queue_family.timestampValidBits = bits[i];
-        m.plan.buffers[MASU_BUFFER_READBACK].bytes = m.plan.buffers[MASU_BUFFER_READBACK].stride = 4096;
+        m.plan.buffers[MASU_BUFFER_READBACK].bytes = m.plan.buffers[MASU_BUFFER_READBACK].stride =
+            4096;
         m.device.vk.properties.limits.timestampPeriod = 2.0f;
         assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
-        assert_int_equal(masu_frame(&m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 0}, &commands, &failure), MASU_OK);
-        uint64_t *stamps = (uint64_t *)(void *)masu_buffer_pointer(&m.device, MASU_BUFFER_READBACK, commands.slot);
+        assert_int_equal(
+            masu_frame(&m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 0}, &commands, &failure),
+            MASU_OK);
+        uint64_t *stamps =
+            (uint64_t *)(void *)masu_buffer_pointer(&m.device, MASU_BUFFER_READBACK, commands.slot);
         uint64_t mask = bits[i] == 64 ? UINT64_MAX : (UINT64_C(1) << bits[i]) - 1;
         uint32_t count = masu_stamps(&m.plan.desc);
         assert_true(count > 2);
@@ -420,7 +430,8 @@ static void times_of_a_clock_that_wraps_are_right(void **state) {
         assert_int_equal(masu_stats(&m, commands.slot, &stats, &failure), MASU_OK);
         assert_true(stats.timed);
         assert_int_equal(stats.gpu_ns, 1000 * (count - 1));
-        for (uint32_t k = 0; k + 1 < count; k++) assert_true(stats.pass_ns[k] == 0 || stats.pass_ns[k] == 1000);
+        for (uint32_t k = 0; k + 1 < count; k++)
+            assert_true(stats.pass_ns[k] == 0 || stats.pass_ns[k] == 1000);
     }
 }
 

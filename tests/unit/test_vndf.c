@@ -206,7 +206,8 @@ static void weights_are_the_lobe_over_the_density(void **state) {
         most = worst_of(most, (double)r.weight);
         if (!(r.l.z > 1e-3f)) continue;
         double l[3] = {(double)r.l.x, (double)r.l.y, (double)r.l.z};
-        worst = worst_of(worst, fabs((double)r.weight * (double)r.pdf / lobe((double)alpha, v, l) - 1));
+        worst =
+            worst_of(worst, fabs((double)r.weight * (double)r.pdf / lobe((double)alpha, v, l) - 1));
         seen++;
     }
     print_message("  weight * pdf equals the lobe within a relative %.1e, "

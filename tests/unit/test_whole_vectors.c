@@ -26,8 +26,10 @@ static void count(const spirv_module *m, uint32_t counts[LOADS_MOST]) {
     memset(counts, 0, LOADS_MOST * sizeof *counts);
     for (size_t k = 0; k < m->count; k++) {
         const spirv_instruction *i = &m->list[k];
-        if (i->op == SPIRV_LOAD && m->def[i->word[1]]->op == SPIRV_TYPE_FLOAT) counts[LOADS_OF_FLOATS]++;
-        if (i->op == SPIRV_LOAD && m->def[i->word[1]]->op == SPIRV_TYPE_VECTOR) counts[LOADS_OF_VECTORS]++;
+        if (i->op == SPIRV_LOAD && m->def[i->word[1]]->op == SPIRV_TYPE_FLOAT)
+            counts[LOADS_OF_FLOATS]++;
+        if (i->op == SPIRV_LOAD && m->def[i->word[1]]->op == SPIRV_TYPE_VECTOR)
+            counts[LOADS_OF_VECTORS]++;
         counts[EXTRACTS] += i->op == 81 || i->op == 77;
     }
 }
@@ -38,19 +40,23 @@ static void check(const char *body, uint32_t floats, uint32_t vectors) {
     spirv_module before, after;
     uint32_t counts[LOADS_MOST];
     size_t words;
-    snprintf(text, sizeof text,
-             "#version 440\nlayout(local_size_x = 1) in;\nstruct row { vec4 a; vec3 b; float c; mat2x4 m; };\n"
-             "layout(std140, set = 0, binding = 0) uniform U { vec4 u; vec4 list[8]; row one; } u;\n"
-             "layout(std430, set = 0, binding = 1) buffer S { float x; row rows[]; } s;\n"
-             "layout(std430, set = 0, binding = 2) buffer V { vec4 v[]; };\n"
-             "layout(std430, set = 0, binding = 3) buffer C { uint counter; };\n"
-             "layout(push_constant) uniform P { uint n; vec2 p; };\nvoid main() {\n%s\n}\n",
-             body);
+    snprintf(
+        text, sizeof text,
+        "#version 440\nlayout(local_size_x = 1) in;\nstruct row { vec4 a; vec3 b; float c; mat2x4 "
+        "m; };\n"
+        "layout(std140, set = 0, binding = 0) uniform U { vec4 u; vec4 list[8]; row one; } u;\n"
+        "layout(std430, set = 0, binding = 1) buffer S { float x; row rows[]; } s;\n"
+        "layout(std430, set = 0, binding = 2) buffer V { vec4 v[]; };\n"
+        "layout(std430, set = 0, binding = 3) buffer C { uint counter; };\n"
+        "layout(push_constant) uniform P { uint n; vec2 p; };\nvoid main() {\n%s\n}\n",
+        body);
     write_text("w.comp", text);
-    assert_int_equal(shell("glslangValidator --quiet -V --target-env vulkan1.1 -o %s/w.spv %s/w.comp && spirv-opt "
-                           "--target-env=vulkan1.1 -O --strip-debug %s/w.spv -o %s/w.spv",
-                           scratch, scratch, scratch, scratch),
-                     0);
+    assert_int_equal(
+        shell(
+            "glslangValidator --quiet -V --target-env vulkan1.1 -o %s/w.spv %s/w.comp && spirv-opt "
+            "--target-env=vulkan1.1 -O --strip-debug %s/w.spv -o %s/w.spv",
+            scratch, scratch, scratch, scratch),
+        0);
     assert_true(spirv_from_file(in_scratch("w.spv"), &before));
     uint32_t *changed = masu_whole_vectors(before.words, before.word_count, &words);
     assert_non_null(changed);
@@ -59,8 +65,8 @@ static void check(const char *body, uint32_t floats, uint32_t vectors) {
     assert_true(spirv_from_words(changed, words, &after));
     count(&after, counts);
     if (counts[LOADS_OF_FLOATS] != floats || counts[LOADS_OF_VECTORS] != vectors)
-        fail_msg("%u loads of floats, %u of vectors instead of %u, %u:\n%s", counts[LOADS_OF_FLOATS],
-                 counts[LOADS_OF_VECTORS], floats, vectors, body);
+        fail_msg("%u loads of floats, %u of vectors instead of %u, %u:\n%s",
+                 counts[LOADS_OF_FLOATS], counts[LOADS_OF_VECTORS], floats, vectors, body);
     free(changed);
     spirv_free(&after);
     spirv_free(&before);
@@ -134,7 +140,8 @@ static void assert_done(const char *name, const uint32_t *words, size_t bytes) {
     size_t changed;
     uint32_t *again = masu_whole_vectors(words, bytes / 4, &changed);
     assert_non_null(again);
-    if (changed != bytes / 4 || memcmp(again, words, bytes)) fail_msg("%s: has components left to load whole", name);
+    if (changed != bytes / 4 || memcmp(again, words, bytes))
+        fail_msg("%s: has components left to load whole", name);
     free(again);
 }
 
@@ -162,7 +169,8 @@ static void shaders_of_the_tree_have_none_left(void **state) {
         masu_scene_view view = masu_scene_view_of(&scene);
         for (uint32_t kind = 0; kind < MASU_BLOB_KIND_COUNT; kind++) {
             if (!view.code[kind].words) continue;
-            assert_done(found.gl_pathv[k], view.code[kind].words, 4 * (size_t)view.code[kind].count);
+            assert_done(found.gl_pathv[k], view.code[kind].words,
+                        4 * (size_t)view.code[kind].count);
             shaders++;
         }
         free(blob);

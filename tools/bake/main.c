@@ -89,7 +89,9 @@ static bool bake(const masu_bake_options *options) {
     return good;
 }
 
-static int bake_in_child(const void *options) { return bake(options) ? MASU_CLI_OK : MASU_CLI_FAILURE; }
+static int bake_in_child(const void *options) {
+    return bake(options) ? MASU_CLI_OK : MASU_CLI_FAILURE;
+}
 
 /* Found out before the work: *code is the exit code. */
 static bool can_write(const masu_bake_options *o, int *code) {
@@ -176,8 +178,10 @@ int main(int argc, char **argv) {
          "without the ground, shadows, ambient occlusion and reflections that the\n"
          "input does not ask for",
          OPTION_BARE, 0},
-        {"variant", "NAME", "material variant of a glTF MODEL (KHR_materials_variants)", OPTION_VARIANT, 0},
-        {"turn", "DEGREES", "turn the environment map of a scene by this much more", OPTION_TURN, 0},
+        {"variant", "NAME", "material variant of a glTF MODEL (KHR_materials_variants)",
+         OPTION_VARIANT, 0},
+        {"turn", "DEGREES", "turn the environment map of a scene by this much more", OPTION_TURN,
+         0},
         {"describe", NULL,
          "write the scene description that a MODEL or FIELD.sdf gets, to -o SCENE.json or\n"
          "stdout, and bake nothing",
@@ -212,8 +216,10 @@ int main(int argc, char **argv) {
         .details =
             "A MODEL is a model file (.glb, .gltf, .obj, .ac, ...). It gets a "
             "camera\n"
-            "that frames it, a ground, sun and sky, shadows and reflections. A FIELD.sdf (docs/sdf.md) gets a\n"
-            "camera, sun and sky, shadows and ambient occlusion. A SCENE.json places models, a camera path, light "
+            "that frames it, a ground, sun and sky, shadows and reflections. A FIELD.sdf "
+            "(docs/sdf.md) gets a\n"
+            "camera, sun and sky, shadows and ambient occlusion. A SCENE.json places models, a "
+            "camera path, light "
             "and\n"
             "an SDF; docs/scene.md describes it. An SDF needs glslangValidator, spirv-val and\n"
             "spirv-opt. The same input gives the same bytes.\n\n"

@@ -194,7 +194,8 @@ static bool draw_job(masu_depth_bench *b, const job *j, uint32_t rung) {
     masu_commands commands;
     masu_readback_image image;
     masu_view view;
-    if (!masu_motion_frame(&b->s, rung, b->time, MASU_MOTION_STEP, true, &commands, b->error, b->error_size))
+    if (!masu_motion_frame(&b->s, rung, b->time, MASU_MOTION_STEP, true, &commands, b->error,
+                           b->error_size))
         return false;
     if (masu_readback(b->s.m, commands.slot, MASU_READBACK_DEPTH, &image, NULL))
         return failed(b, "no depth to read back");

@@ -180,8 +180,9 @@ static void write_commands(FILE *f, const masu_plot *p) {
     fprintf(f, "set output 'front.svg'\nset key top right\n");
     write_title(f, p, "error against time, and the ladder");
     fprintf(f, "plot $front using 1:2 with lines lw 2 lc rgb '#222222' title 'Pareto front', \\\n");
-    static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
-                                         "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#d4a017", "#999999"};
+    static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73",
+                                         "#cc79a7", "#56b4e9", "#56b4e9", "#56b4e9",
+                                         "#8c510a", "#d4a017", "#999999"};
     static const char *const names[] = {
         "base", "render size only", "cheap",           "lean",    "full",
         "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "temporal", "one knob"};
@@ -199,16 +200,17 @@ static void write_commands(FILE *f, const masu_plot *p) {
     write_title(f, p, "effect of each technique, from the setting without it");
     fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888'");
     if (arrows) {
-        fprintf(f, ", \\\n  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 "
-                   "filled lw 1.2 lc rgb '#0072b2'");
+        fprintf(f,
+                ", \\\n  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 "
+                "filled lw 1.2 lc rgb '#0072b2'");
     }
     if (named) fprintf(f, ", \\\n  $names using 1:2:3 with labels font ',9' left noenhanced");
     fprintf(f, "\n");
 }
 
 /* The commands are stored with the plots, so that they can be changed. */
-static bool write_file(const masu_plot *p, const char *text, size_t bytes, char folder[4096], char *error,
-                       size_t error_size) {
+static bool write_file(const masu_plot *p, const char *text, size_t bytes, char folder[4096],
+                       char *error, size_t error_size) {
     char path[4096];
     if (masu_sweep_path(p->folder, "plots", folder) && (!mkdir(folder, 0777) || errno == EEXIST) &&
         masu_sweep_path(p->folder, "plots/plots.gp", path))

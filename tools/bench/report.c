@@ -218,11 +218,11 @@ static bool write_ladder(report *r) {
     masu_machine machine;
     for (uint32_t i = 0; masu_machine_read(r->folder, i, &machine); i++)
         snprintf(date, sizeof date, "%.10s", machine.date);
-    json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:s, s:i, s:i, s:f, s:s, s:s, s:o}", "date", date, "scene", text_of(r->sweep, "scene"),
-        "hash", text_of(r->sweep, "hash"), "driver", text_of(r->sweep, "driver"), "width",
-        (int)r->size.width, "height", (int)r->size.height, "time", number_of(r, "time"), "clock",
-        clock_of(r->out), "error", "flip", "rungs", rungs);
+    json_t *root = json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:f, s:s, s:s, s:o}", "date", date,
+                             "scene", text_of(r->sweep, "scene"), "hash", text_of(r->sweep, "hash"),
+                             "driver", text_of(r->sweep, "driver"), "width", (int)r->size.width,
+                             "height", (int)r->size.height, "time", number_of(r, "time"), "clock",
+                             clock_of(r->out), "error", "flip", "rungs", rungs);
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
     bool good = text && masu_sweep_path(r->folder, "ladder.json", path);
     if (!good) failed(r, "out of memory");
@@ -248,7 +248,8 @@ static bool put_plot(report *r, const char *path, const char *text) {
 }
 
 static bool put_image(report *r, const uint8_t *rgba, const char *kind, const char *text) {
-    return masu_page_image(r->page, rgba, r->size.width, r->size.height, r->image_bytes, kind, text) ||
+    return masu_page_image(r->page, rgba, r->size.width, r->size.height, r->image_bytes, kind,
+                           text) ||
            failed(r, "out of memory");
 }
 
@@ -302,7 +303,8 @@ static void put_note(report *r) {
     masu_markup(
         f,
         "<ul>\n<li>The <b>base</b> setting has all knobs at their defaults, at full size. The name "
-        "of a setting lists the knobs that differ. Ratios are times divided by the time of the base.</li>\n");
+        "of a setting lists the knobs that differ. Ratios are times divided by the time of the "
+        "base.</li>\n");
     masu_markup(
         f,
         "<li>The <b>ground truth</b> is the average of %.0f full-size frames with jittered samples "
@@ -310,24 +312,30 @@ static void put_note(report *r) {
         "at most %.0f frames in motion.</li>\n",
         number_of(r, "positions"), number_of(r, "frames"));
     fputs(
-        "<li><b>FLIP</b> is the perceived difference from the ground truth at 67 pixels per degree: 0 is "
-        "none, 1 is the maximum. The table has its mean and 99th percentile in motion along the path, its "
+        "<li><b>FLIP</b> is the perceived difference from the ground truth at 67 pixels per "
+        "degree: 0 is "
+        "none, 1 is the maximum. The table has its mean and 99th percentile in motion along the "
+        "path, its "
         "mean with a stationary camera, and its mean for frames an eighth of a second apart. The "
-        "<b>error</b>, which orders the ladder, is the mean of FLIP in motion and stationary, if both are "
+        "<b>error</b>, which orders the ladder, is the mean of FLIP in motion and stationary, if "
+        "both are "
         "measured. HDR-FLIP is the maximum over all exposures, before the tone curve.</li>\n"
         "<li><b>RMSE</b> and flicker are out of 255. Flicker is the mean difference of successive "
-        "frames with a stationary camera.</li>\n<li><b>hit/miss</b> and <b>depth</b> compare surfaces with ",
+        "frames with a stationary camera.</li>\n<li><b>hit/miss</b> and <b>depth</b> compare "
+        "surfaces with ",
         f);
     masu_markup(r->page, "%s", text_of(r->sweep, "depth"));
-    fputs(
-        " at the same size: pixels where only one of the two shows the sky, and the distance of all other "
-        "surfaces in pixel widths at that depth. <b>relMSE</b> compares pixels with traced reflections "
-        "with many rays. A dash: the setting has no such value.</li>\n",
-        f);
+    fputs(" at the same size: pixels where only one of the two shows the sky, and the distance of "
+          "all other "
+          "surfaces in pixel widths at that depth. <b>relMSE</b> compares pixels with traced "
+          "reflections "
+          "with many rays. A dash: the setting has no such value.</li>\n",
+          f);
     masu_markup(
         f,
         "<li><b>Times</b>: %.0f runs of each setting, interleaved with the base; the first round "
-        "is dropped. The ratio is the median of the ratios per round; the ratio of minima is next to "
+        "is dropped. The ratio is the median of the ratios per round; the ratio of minima is next "
+        "to "
         "it. If the two differ a lot, the machine was busy: they differ by more than 10 %% in %u "
         "of %u rows.</li>\n",
         number_of(r, "runs"), r->out->unsteady, r->out->rows);
@@ -335,21 +343,21 @@ static void put_note(report *r) {
         masu_markup(
             f,
             "<li>The best of many noisy times is biased. So %u settings, including the rungs, were "
-            "timed again separately and for longer (steady.csv). Their rows show these times.</li>\n",
+            "timed again separately and for longer (steady.csv). Their rows show these "
+            "times.</li>\n",
             r->steady_count);
     }
-    masu_markup(
-        f, "<li>The ladder uses %s.</li>\n",
-        r->out->by_costs
-            ? "the mean of the costs that are computed for classes of GPUs (costs.csv); so does every "
-              "ratio here but that of minima"
-        : r->out->by_timestamps ? "the device's timestamps, which agree with the wall clock"
-                                : "the wall clock: some timestamps disagree with it");
-    fputs(
-        "<li><b>How to read it</b>: find the rung with an acceptable error, and the time that it saves; then "
-        "the technique that saves the most time for the least FLIP. Differences below 0.001 are "
-        "noise if reflections are traced.</li>\n</ul>\n",
-        f);
+    masu_markup(f, "<li>The ladder uses %s.</li>\n",
+                r->out->by_costs ? "the mean of the costs that are computed for classes of GPUs "
+                                   "(costs.csv); so does every "
+                                   "ratio here but that of minima"
+                : r->out->by_timestamps ? "the device's timestamps, which agree with the wall clock"
+                                        : "the wall clock: some timestamps disagree with it");
+    fputs("<li><b>How to read it</b>: find the rung with an acceptable error, and the time that it "
+          "saves; then "
+          "the technique that saves the most time for the least FLIP. Differences below 0.001 are "
+          "noise if reflections are traced.</li>\n</ul>\n",
+          f);
 }
 
 static void put_head(report *r) {
@@ -453,11 +461,12 @@ static void put_row(report *r, uint32_t i, const char *label, bool brief, bool m
 
 static void put_ladder(report *r) {
     FILE *f = r->page;
-    fputs(
-        "<h2>The ladder</h2>\n<p>Rungs from the Pareto front in falling quality; neighbours "
-        "differ in time by at least 4 %, and with a stationary camera by at most 3 of 255 on average. "
-        "ladder.json has all their knobs; the table of all settings has all columns.</p>\n<div class=\"wide\"><table class=\"sort\">\n",
-        f);
+    fputs("<h2>The ladder</h2>\n<p>Rungs from the Pareto front in falling quality; neighbours "
+          "differ in time by at least 4 %, and with a stationary camera by at most 3 of 255 on "
+          "average. "
+          "ladder.json has all their knobs; the table of all settings has all columns.</p>\n<div "
+          "class=\"wide\"><table class=\"sort\">\n",
+          f);
     put_columns(f, true);
     for (uint32_t i = 0; i < r->rung_count; i++) {
         char label[16];
@@ -481,19 +490,21 @@ static bool put_plots(report *r) {
 /* The effect of one knob, compared with the setting that differs only by this knob. */
 static void put_techniques(report *r) {
     FILE *f = r->page;
-    fputs(
-        "<h2>Techniques</h2>\n<p>Every technique compared with the setting without it: the ratio of their "
-        "times, and the change in error (FLIP), RMSE and device memory.</p>\n"
-        "<div class=\"wide\"><table class=\"sort\">\n<tr><th>technique</th><th>from</th><th>time</th><th>error</th>"
-        "<th>RMSE</th><th>KiB</th></tr>\n",
-        f);
+    fputs("<h2>Techniques</h2>\n<p>Every technique compared with the setting without it: the ratio "
+          "of their "
+          "times, and the change in error (FLIP), RMSE and device memory.</p>\n"
+          "<div class=\"wide\"><table "
+          "class=\"sort\">\n<tr><th>technique</th><th>from</th><th>time</th><th>error</th>"
+          "<th>RMSE</th><th>KiB</th></tr>\n",
+          f);
     for (uint32_t i = 0; i < r->count; i++) {
         const masu_row *row = &r->rows[i], *parent = masu_rows_find(r->rows, r->count, row->parent);
         if (!parent || parent == row) continue;
         masu_markup(f, "<tr><td>%s</td><td>%s</td>", row->setting, row->parent);
         masu_markup(f, "<td>%.3f</td><td>%+.4f</td><td>%+.2f</td><td>%+.0f</td></tr>\n",
-                r->ratios[i] / r->ratios[parent - r->rows], masu_row_error(row) - masu_row_error(parent),
-                row->rmse - parent->rmse, (row->device_bytes - parent->device_bytes) / 1024.0);
+                    r->ratios[i] / r->ratios[parent - r->rows],
+                    masu_row_error(row) - masu_row_error(parent), row->rmse - parent->rmse,
+                    (row->device_bytes - parent->device_bytes) / 1024.0);
     }
     fputs("</table></div>\n", f);
 }
@@ -515,7 +526,8 @@ static void put_all(report *r) {
           "<tr><th>setting</th><th>reason</th></tr>\n",
           r->page);
     json_array_foreach(json_object_get(r->sweep, "dropped"), k, one) {
-        masu_markup(r->page, "<tr><td>%s</td><td>%s</td></tr>\n", text_of(one, "setting"), text_of(one, "why"));
+        masu_markup(r->page, "<tr><td>%s</td><td>%s</td></tr>\n", text_of(one, "setting"),
+                    text_of(one, "why"));
     }
     fputs("</table></div>\n", r->page);
 }

@@ -22,7 +22,13 @@
 
 /* SETTLE: static frames before flicker is measured over FLICKER differences; FAST: frames of fast
  * motion; WARM: untimed frames before samples. */
-enum { SETTLE_FRAMES = 24, FLICKER_FRAMES = 8, FAST_FRAMES = 8, WARM_FRAMES = 2, BATCH = MASU_MAX_RUNGS - 1 };
+enum {
+    SETTLE_FRAMES = 24,
+    FLICKER_FRAMES = 8,
+    FAST_FRAMES = 8,
+    WARM_FRAMES = 2,
+    BATCH = MASU_MAX_RUNGS - 1
+};
 
 typedef struct sweep {
     const masu_sweep_desc *d;
@@ -184,7 +190,8 @@ static bool find_truth(sweep *w) {
 /* ---- Images ---------------------------------------------------------------------------------- */
 
 static bool draw(sweep *w, uint32_t rung, bool cut, masu_commands *commands) {
-    return masu_motion_frame(&w->s, rung, w->d->time, MASU_MOTION_STEP, cut, commands, w->error, w->error_size);
+    return masu_motion_frame(&w->s, rung, w->d->time, MASU_MOTION_STEP, cut, commands, w->error,
+                             w->error_size);
 }
 
 static bool read_back(sweep *w) {
@@ -225,7 +232,8 @@ static bool flicker(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
 }
 
 static bool find_flip(sweep *w, const uint8_t *shown, masu_flip *flip) {
-    return masu_metric_flip(w->truth, shown, w->d->size.width, w->d->size.height, 0, w->map, flip) ||
+    return masu_metric_flip(w->truth, shown, w->d->size.width, w->d->size.height, 0, w->map,
+                            flip) ||
            failed(w, "out of memory");
 }
 
@@ -258,8 +266,8 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
         !masu_image_save_png(path, w->before, size.width, size.height, 0, w->error, w->error_size))
         return false;
     const masu_motion fast = {w->d->time, 1.0 / 8.0, FAST_FRAMES, w->motion.remembers};
-    if (!masu_motion_draw(&w->s, &fast, rung, &s->rung, next, w->error, w->error_size) || !read_back(w) ||
-        !find_flip(w, shown, &flip))
+    if (!masu_motion_draw(&w->s, &fast, rung, &s->rung, next, w->error, w->error_size) ||
+        !read_back(w) || !find_flip(w, shown, &flip))
         return false;
     row->fast_flip = flip.mean;
     return true;

@@ -298,12 +298,13 @@ static bool copy(const char *from, const char *to, char *error, size_t error_siz
     size_t count = 0;
     struct masu_image picture = {0};
     const char *end = strrchr(from, '.');
-    bool good = end && (!strcmp(end, ".png") ? masu_image_load_png(from, &picture, error, error_size)
-                                             : masu_image_load_pfm(from, &picture, error, error_size));
+    bool good =
+        end && (!strcmp(end, ".png") ? masu_image_load_png(from, &picture, error, error_size)
+                                     : masu_image_load_pfm(from, &picture, error, error_size));
     masu_image_free(&picture);
-    good =
-        good && masu_file_read(from, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size) &&
-        masu_file_write(to, bytes, count, error, error_size);
+    good = good &&
+           masu_file_read(from, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size) &&
+           masu_file_write(to, bytes, count, error, error_size);
     free(bytes);
     return good;
 }

@@ -49,7 +49,8 @@ int masu_rows_write(FILE *f, const masu_row *row) {
 /* A setting's name is also used for files, plots and pages. It has only characters of knobs and
  * their values, and does not start with a dot. */
 static bool is_name(const char *text, size_t n) {
-    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=+.- ";
+    static const char allowed[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=+.- ";
     return n < MASU_SETTING_ID && *text != '.' && strspn(text, allowed) >= n;
 }
 

@@ -278,8 +278,9 @@ bool masu_cli_sun(const masu_cli *cli, double out[2]) {
     text = good ? end + 1 : "";
     out[1] = strtod(text, &end);
     if (good && end != text && !*end && fabs(out[1]) <= 90.0) return true;
-    masu_cli_usage_error("%s: expected AZIMUTH,ELEVATION in degrees, at most 360 and 90, not \"%s\"",
-                         value_owner(cli), cli->value);
+    masu_cli_usage_error(
+        "%s: expected AZIMUTH,ELEVATION in degrees, at most 360 and 90, not \"%s\"",
+        value_owner(cli), cli->value);
     return false;
 }
 

@@ -25,7 +25,8 @@ void masu_gnuplot_quote(FILE *f, const char *text) {
 /* Data are not commands, but a string in data ends at the next quote and cannot contain one. */
 void masu_gnuplot_label(FILE *f, const char *text) {
     fputc('"', f);
-    for (; *text; text++) fputc(*text == '"' || *text == '\\' ? '\'' : is_control(*text) ? ' ' : *text, f);
+    for (; *text; text++)
+        fputc(*text == '"' || *text == '\\' ? '\'' : is_control(*text) ? ' ' : *text, f);
     fputc('"', f);
 }
 

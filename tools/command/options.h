@@ -43,7 +43,8 @@ typedef struct masu_option {
 
 /* The rows: MASU_UINT(options, rays, "rays", 1, 1000000, "of each point") */
 #define MASU_ROW(type, member, take_, name_, value_, help_)                                        \
-    .name = (name_), .value = (value_), .help = (help_), .take = (take_), .at = offsetof(type, member)
+    .name = (name_), .value = (value_), .help = (help_), .take = (take_),                          \
+    .at = offsetof(type, member)
 #define MASU_FLAG(type, member, name, help)                                                        \
     { MASU_ROW(type, member, MASU_TAKE_FLAG, name, NULL, help) }
 #define MASU_UINT(type, member, name, min_, max_, help)                                            \

@@ -206,8 +206,10 @@ double masu_extreme_count(const masu_readback_image *image, bool depth) {
         const void *row = (const uint8_t *)image->pixels + y * image->row_bytes;
         const float *depths = row;
         const uint16_t *halves = row;
-        for (uint32_t i = 0; i < image->width && depth; i++) n += !(depths[i] >= 0 && depths[i] <= 1);
-        for (uint32_t i = 0; i < 4 * image->width && !depth; i++) n += (halves[i] & 0x7C00) == 0x7C00;
+        for (uint32_t i = 0; i < image->width && depth; i++)
+            n += !(depths[i] >= 0 && depths[i] <= 1);
+        for (uint32_t i = 0; i < 4 * image->width && !depth; i++)
+            n += (halves[i] & 0x7C00) == 0x7C00;
     }
     return n;
 }
@@ -276,8 +278,8 @@ bool masu_field_compare(const masu_session *s, uint32_t slot, const char *scene_
     masu_readback_image image;
     char path[4096];
     size_t pixels = (size_t)view->width * view->height;
-    if (masu_readback(s->m, slot, MASU_READBACK_DEPTH, &image, NULL) || image.width != view->width ||
-        image.height != view->height) {
+    if (masu_readback(s->m, slot, MASU_READBACK_DEPTH, &image, NULL) ||
+        image.width != view->width || image.height != view->height) {
         snprintf(error, error_size, "field: expected a depth image of %ux%u", view->width,
                  view->height);
         return false;

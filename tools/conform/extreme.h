@@ -58,8 +58,8 @@ typedef struct masu_field_figures {
 } masu_field_figures;
 
 /* Call it between masu_session_open (no_renderer) and masu_session_start, while the blob exists. */
-bool masu_field_look(const masu_session *s, const struct masu_case *of, masu_view *view, char *error,
-                     size_t error_size);
+bool masu_field_look(const masu_session *s, const struct masu_case *of, masu_view *view,
+                     char *error, size_t error_size);
 
 /* Compares the frame's depth with the ground-truth library of the scene. */
 bool masu_field_compare(const masu_session *s, uint32_t slot, const char *scene_path,

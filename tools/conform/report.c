@@ -134,7 +134,8 @@ static void print_limits(FILE *f, const masu_case *c) {
             if (!limit && !more) /* 0 cannot be undercut: print equality */
                 fprintf(f, "%s%s = 0", join, name);
             else
-                fprintf(f, "%s%s %s %.4g", join, name, more ? "\xE2\x89\xA5" : "\xE2\x89\xA4", limit);
+                fprintf(f, "%s%s %s %.4g", join, name, more ? "\xE2\x89\xA5" : "\xE2\x89\xA4",
+                        limit);
             join = ", ";
         }
         if (masu_bound_is_set(&c->least[m])) {
@@ -167,7 +168,8 @@ void masu_conform_table(FILE *f, const masu_suite *suite, const masu_conform_res
         print_limits(f, r->of);
         fputs(" | ", f);
         for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
-            bool asked = masu_bound_is_set(&r->of->bounds[m]) || masu_bound_is_set(&r->of->least[m]);
+            bool asked =
+                masu_bound_is_set(&r->of->bounds[m]) || masu_bound_is_set(&r->of->least[m]);
             bool unlimited = masu_bound_is_set(&r->of->bounds[m]) && !limit_of(&r->of->bounds[m]) &&
                              !(r->values[m] > 0);
             if (!asked || unlimited || isnan(r->values[m])) continue;

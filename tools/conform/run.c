@@ -251,7 +251,8 @@ static bool wait(masu_session *s, uint32_t slot, masu_conform_result *r) {
 }
 
 static masu_frame_desc frame_at(const masu_case *of, uint32_t number) {
-    return (masu_frame_desc){MASU_FRAME_DESC, .time = of->time + of->move * number, .time_step = 1.0f / 60.0f};
+    return (masu_frame_desc){MASU_FRAME_DESC, .time = of->time + of->move * number,
+                             .time_step = 1.0f / 60.0f};
 }
 
 static void take_counts(const masu_stats_info *s, masu_conform_result *r) {

@@ -97,7 +97,8 @@ static direction drawn(const double q[NUMBERS], double u1, double u2) {
 static double difference(double f, double g) { return (f - g) * (f - g) / (f + g); }
 
 static double error_of(const lobe *b, const double fit[NUMBERS]) {
-    double q[NUMBERS] = {fmax(fabs(fit[0]), 1e-5), fmax(fabs(fit[1]), 1e-5), fit[2], fit[3]}, sum = 0;
+    double q[NUMBERS] = {fmax(fabs(fit[0]), 1e-5), fmax(fabs(fit[1]), 1e-5), fit[2], fit[3]},
+           sum = 0;
     for (int k = 0; k < ALL; k++) {
         double g = cosine_at(q, b->to[k]);
         if (b->density[k] > 0)
@@ -110,7 +111,8 @@ static double error_of(const lobe *b, const double fit[NUMBERS]) {
     return sum / ALL;
 }
 
-static void between(const double a[NUMBERS], const double b[NUMBERS], double part, double out[NUMBERS]) {
+static void between(const double a[NUMBERS], const double b[NUMBERS], double part,
+                    double out[NUMBERS]) {
     for (int k = 0; k < NUMBERS; k++) out[k] = a[k] + part * (b[k] - a[k]);
 }
 
@@ -119,7 +121,10 @@ static double improve(const lobe *b, double q[NUMBERS], double step, int steps) 
     int best = 0;
     for (int i = 0; i <= NUMBERS; i++) {
         memcpy(corner[i], q, sizeof corner[i]);
-        if (i) corner[i][i - 1] += i - 1 < SHEAR ? step * fabs(q[i - 1]) : i - 1 == SHEAR ? step / 2 : step;
+        if (i)
+            corner[i][i - 1] += i - 1 < SHEAR    ? step * fabs(q[i - 1])
+                                : i - 1 == SHEAR ? step / 2
+                                                 : step;
         error[i] = error_of(b, corner[i]);
     }
     for (int n = 0; n < steps; n++) {
@@ -170,7 +175,8 @@ static double cosine_of(int column) {
 }
 
 static uint32_t packed(double low, double high) {
-    int a = (int)lround(fmin(fmax(low, -1), 1) * 32767), b = (int)lround(fmin(fmax(high, -1), 1) * 32767);
+    int a = (int)lround(fmin(fmax(low, -1), 1) * 32767),
+        b = (int)lround(fmin(fmax(high, -1), 1) * 32767);
     return ((uint32_t)a & 0xFFFFu) | (uint32_t)b << 16;
 }
 
@@ -185,7 +191,8 @@ int main(void) {
         for (int column = 0; column < COLUMNS; column++) {
             make_lobe(&b, alpha, cosine_of(column));
             if (column)
-                q[ANGLE] += (alpha < 0.3 ? 1 : 0.3) * (acos(cosine_of(column)) - acos(cosine_of(column - 1)));
+                q[ANGLE] += (alpha < 0.3 ? 1 : 0.3) *
+                            (acos(cosine_of(column)) - acos(cosine_of(column - 1)));
             improve(&b, q, alpha < 0.05 ? 0.06 : 0.15, 160);
             double error = improve(&b, q, 0.05, 160);
             if (!column) {
@@ -202,7 +209,8 @@ int main(void) {
     fprintf(stderr, "error: mean %.5f, largest %.5f\n", mean, worst);
     printf("/* cosines.inc: made by make_cosines.c. */\nstatic const uint32_t cosines[] = {\n");
     for (int i = 0; i < ROWS * COLUMNS * 2; i++)
-        printf("0x%08x,%s", words[i / (2 * COLUMNS)][i / 2 % COLUMNS][i % 2], i % 8 == 7 ? "\n" : " ");
+        printf("0x%08x,%s", words[i / (2 * COLUMNS)][i / 2 % COLUMNS][i % 2],
+               i % 8 == 7 ? "\n" : " ");
     printf("};\n");
     return fflush(stdout) || ferror(stdout) ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -42,7 +42,8 @@ int main(void) {
             }
         }
     }
-    printf("/* Made by tools/generate/make_smaa_area.c. */\nstatic const uint32_t masu_smaa_area[] = {\n");
+    printf("/* Made by tools/generate/make_smaa_area.c. */\nstatic const uint32_t masu_smaa_area[] "
+           "= {\n");
     for (int i = 0; i < MASU_SMAA_AREA_WORDS; i++)
         printf("0x%08x,%s", words[i], i % 8 == 7 ? "\n" : " ");
     printf("};\n");

@@ -176,7 +176,8 @@ int main(void) {
         four[3] = bits_of(line[row][1]);
     }
     memcpy(&words[MASU_TABLE_TRANSFORM], cosines, sizeof cosines);
-    printf("/* Made by tools/generate/make_split_sum.c. */\nstatic const uint32_t masu_split_sum[] = {\n");
+    printf("/* Made by tools/generate/make_split_sum.c. */\nstatic const uint32_t masu_split_sum[] "
+           "= {\n");
     for (int i = 0; i < MASU_TABLE_WORDS_ALL; i++) {
         printf("0x%08x,%s", words[i], i % 8 == 7 ? "\n" : " ");
     }

@@ -79,9 +79,11 @@ static void read_module(const char *folder, module *m) {
     m->words = malloc((size_t)size);
     if (!m->words || fread(m->words, 4, m->count, f) != m->count) die("%s cannot be read", path);
     fclose(f);
-    if (m->words[0] != 0x07230203u) die("%s is not a SPIR-V module of this machine's byte order", path);
+    if (m->words[0] != 0x07230203u)
+        die("%s is not a SPIR-V module of this machine's byte order", path);
     for (uint32_t i = HEADER; i < m->count; i += m->words[i] >> 16)
-        if (!(m->words[i] >> 16) || m->words[i] >> 16 > m->count - i) die("%s ends in an instruction", path);
+        if (!(m->words[i] >> 16) || m->words[i] >> 16 > m->count - i)
+            die("%s ends in an instruction", path);
 }
 
 /* ---- Heads ----------------------------------------------------------------------------------- */
@@ -113,10 +115,27 @@ static const char *words_of(uint32_t op) {
         case 72: return "tl";
         case 79: case 82: return "triil";
         case 81: return "tril";
-        case 86: case 87: case 88: case 89: case 90: case 91: case 92: case 93: case 94: case 95: case 98:
-            return "triili";
+        case 86:
+        case 87:
+        case 88:
+        case 89:
+        case 90:
+        case 91:
+        case 92:
+        case 93:
+        case 94:
+        case 95:
+        case 98: return "triili";
         case 96: case 97: return "triiili";
-        case 99: case 218: case 219: case 224: case 225: case 228: case 249: case 254: case 4473: return "i";
+        case 99:
+        case 218:
+        case 219:
+        case 224:
+        case 225:
+        case 228:
+        case 249:
+        case 254:
+        case 4473: return "i";
         case 246: return "iil";
         case 247: return "il";
         case 248: return "r";
@@ -255,7 +274,8 @@ static void find_local(packing *p, const module *m) {
         inside |= op == 54;
         if (!inside || op == 59) continue;
         for (uint32_t k = 1; k < count && k <= MASU_PACK_SHAPE; k++)
-            if (h.shape[k - 1] == MASU_PACK_RESULT && m->words[i + k] < p->bound) p->local[m->words[i + k]] = 1;
+            if (h.shape[k - 1] == MASU_PACK_RESULT && m->words[i + k] < p->bound)
+                p->local[m->words[i + k]] = 1;
     }
 }
 
@@ -323,12 +343,15 @@ static size_t alike(const bytes *pool, size_t from, const uint8_t *at, size_t co
 
 /* Bytes that a run saves: its length minus its own size. */
 static int gain(size_t length, size_t from, size_t expected) {
-    int cost = 1 + (length >= MASU_PACK_ELSEWHERE ? (int)literal_bytes((uint32_t)length - MASU_PACK_ELSEWHERE) : 0);
+    int cost = 1 + (length >= MASU_PACK_ELSEWHERE
+                        ? (int)literal_bytes((uint32_t)length - MASU_PACK_ELSEWHERE)
+                        : 0);
     if (from != expected) cost += (int)literal_bytes(code_of((uint32_t)(from - expected)));
     return (int)length - cost;
 }
 
-static int best_run(const bytes *pool, const uint8_t *at, size_t count, size_t expected, size_t *from, size_t *length) {
+static int best_run(const bytes *pool, const uint8_t *at, size_t count, size_t expected,
+                    size_t *from, size_t *length) {
     int best = 0;
     size_t n = expected < pool->count ? alike(pool, expected, at, count) : 0;
     if (n && gain(n, expected, expected) > best) {
@@ -367,7 +390,8 @@ static void pack_module(const bytes *tokens, bytes *pool, bytes *runs, module *m
         size_t from = 0, length = 0, later_from, later;
         int saves = best_run(pool, tokens->at + i, tokens->count - i, end + own, &from, &length);
         if (saves > 0 && i + 1 < tokens->count &&
-            best_run(pool, tokens->at + i + 1, tokens->count - i - 1, end + own + 1, &later_from, &later) > saves)
+            best_run(pool, tokens->at + i + 1, tokens->count - i - 1, end + own + 1, &later_from,
+                     &later) > saves)
             saves = 0;
         if (saves < (from == end + own ? NEXT_SAVES : JUMP_SAVES)) {
             put(pool, tokens->at[i++]);
@@ -424,7 +448,8 @@ int main(int argc, char **argv) {
     uint32_t *words = malloc(largest * sizeof *words);
     if (!words) die("no memory");
     for (uint32_t i = 0; i < count; i++) {
-        if (!masu_unpack(&pack, &modules[i].packed, words) || memcmp(words, modules[i].words, 4 * (size_t)modules[i].count))
+        if (!masu_unpack(&pack, &modules[i].packed, words) ||
+            memcmp(words, modules[i].words, 4 * (size_t)modules[i].count))
             die("%s does not come back as it was", modules[i].name);
     }
     printf("/* Made by tools/generate/pack_spirv.c: %u modules. */\n", count);
@@ -436,8 +461,10 @@ int main(int argc, char **argv) {
         for (uint32_t k = 0; k < MASU_PACK_SHAPE; k++) printf("%u,", heads[i].shape[k]);
         printf("}},\n");
     }
-    printf("};\nstatic const masu_pack masu_pack_of_all = {masu_pack_heads, %u, masu_pack_pool, masu_pack_runs, "
-           "%u, %u};\n", pack.head_count, pack.pool_bytes, pack.run_bytes);
+    printf("};\nstatic const masu_pack masu_pack_of_all = {masu_pack_heads, %u, masu_pack_pool, "
+           "masu_pack_runs, "
+           "%u, %u};\n",
+           pack.head_count, pack.pool_bytes, pack.run_bytes);
     for (uint32_t i = 0; i < count; i++) {
         const masu_packed *p = &modules[i].packed;
         printf("#define MASU_PACKED_%s {%uu, %uu, %uu, %uu, {0x%xu, 0x%llxu}}\n", modules[i].name,

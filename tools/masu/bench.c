@@ -223,8 +223,10 @@ static int check(const options *o) {
     if (o->golden && (apart || o->ladder || o->sweep.shards > 1))
         return masu_cli_usage_error(
             "--golden cannot be combined with --shard, --merge, --against or --ladder");
-    if (o->index && (apart || o->ladder || o->rungs_of || o->golden || o->sweep.folder || o->given.count))
-        return masu_cli_usage_error("--index cannot be combined with scenes, folders or other modes");
+    if (o->index &&
+        (apart || o->ladder || o->rungs_of || o->golden || o->sweep.folder || o->given.count))
+        return masu_cli_usage_error(
+            "--index cannot be combined with scenes, folders or other modes");
     if (o->csv && !o->against) return masu_cli_usage_error("--csv needs --against");
     return MASU_CLI_OK;
 }
@@ -277,13 +279,16 @@ const masu_cli_command masu_cmd_bench = {
         "  ladder.json        the rungs, from the Pareto front\n"
         "  index.html         report with tables, plots and images\n"
         "  reference.csv      with --golden: ratios of patches of each rung at rest\n"
-        "  costs.csv          if it is there, costs of settings on GPUs (masu-lab ladder --costs): the\n"
+        "  costs.csv          if it is there, costs of settings on GPUs (masu-lab ladder --costs): "
+        "the\n"
         "                     rungs are chosen by these instead of times\n"
         "  truth.png          ground truth, unless --truth names a file (64 samples per pixel)\n"
         "  plots/             plots, if gnuplot is installed\n"
         "\n"
-        "Method: frames of each setting alternate with frames of the base setting (all defaults, no\n"
-        "upscaling). Times are measured with a stationary camera. The image of a setting is its last frame\n"
+        "Method: frames of each setting alternate with frames of the base setting (all defaults, "
+        "no\n"
+        "upscaling). Times are measured with a stationary camera. The image of a setting is its "
+        "last frame\n"
         "in motion. If NAME.truth.so is next to NAME.masu, SDF surfaces are compared with its\n"
         "double-precision field; the file is loaded as code, so it must be trusted.\n\n"
         "Exit codes:\n"

@@ -107,22 +107,26 @@ static int run(masu_cli *cli) {
 const masu_cli_command masu_cmd_compare = {
     .name = "compare",
     .arguments = "REFERENCE IMAGE [options]",
-    .summary =
-        "print the error of an image against a reference: RMSE, PSNR, SSIM, FLIP, ratios of patches",
-    .details =
-        "Both images must have the same size. PNGs are read as sRGB; alpha is ignored. SSIM is computed on\n"
-        "luma.\n\n"
-        "Linear light (PFM, OpenEXR, a .ref of `masu-lab reference`): relative RMSE (of the reference's\n"
-        "mean), relMSE, HDR-FLIP, and statistics of 16x9 patches: the ratio of the means, the 95th\n"
-        "percentile of |patch ratio - 1| beyond three standard errors, and with --error or a .ref the\n"
-        "mean of z^2 over the nine tenths of the patches with the least, z = difference / sqrt(standard\n"
-        "error^2 + (1 % of the patch)^2). Limits for equal images: 0.8 %, 3.5 %, 1.02.\n\n"
-        "Exit codes:\n"
-        "  0  success, for any error\n"
-        "  1  a file could not be read or written, or the sizes differ\n"
-        "  2  the command line is wrong\n\n"
-        "Examples:\n"
-        "  masu compare reference.png frame.png\n"
-        "  masu compare reference.exr frame.exr --error sigma.pfm\n"
-        "  masu compare reference.png frame.png --map flip.png --json -\n",
+    .summary = "print the error of an image against a reference: RMSE, PSNR, SSIM, FLIP, ratios of "
+               "patches",
+    .details = "Both images must have the same size. PNGs are read as sRGB; alpha is ignored. SSIM "
+               "is computed on\n"
+               "luma.\n\n"
+               "Linear light (PFM, OpenEXR, a .ref of `masu-lab reference`): relative RMSE (of the "
+               "reference's\n"
+               "mean), relMSE, HDR-FLIP, and statistics of 16x9 patches: the ratio of the means, "
+               "the 95th\n"
+               "percentile of |patch ratio - 1| beyond three standard errors, and with --error or "
+               "a .ref the\n"
+               "mean of z^2 over the nine tenths of the patches with the least, z = difference / "
+               "sqrt(standard\n"
+               "error^2 + (1 % of the patch)^2). Limits for equal images: 0.8 %, 3.5 %, 1.02.\n\n"
+               "Exit codes:\n"
+               "  0  success, for any error\n"
+               "  1  a file could not be read or written, or the sizes differ\n"
+               "  2  the command line is wrong\n\n"
+               "Examples:\n"
+               "  masu compare reference.png frame.png\n"
+               "  masu compare reference.exr frame.exr --error sigma.pfm\n"
+               "  masu compare reference.png frame.png --map flip.png --json -\n",
     .run = run};

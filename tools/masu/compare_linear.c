@@ -38,10 +38,10 @@ static bool load(const char *path, linear *out, char *error, size_t size) {
     struct masu_image image;
     if (!masu_image_load(path, &image, error, size)) return false;
     if (!image.values) {
-        snprintf(
-            error, size,
-            "%.1500s: found 8-bit sRGB, expected linear light (PFM, OpenEXR, .ref) as the other image",
-            path);
+        snprintf(error, size,
+                 "%.1500s: found 8-bit sRGB, expected linear light (PFM, OpenEXR, .ref) as the "
+                 "other image",
+                 path);
         masu_image_free(&image);
         return false;
     }
@@ -108,11 +108,11 @@ static int report(const masu_compare_options *o, const linear images[2],
         json_object_set_new(root, "patch_z2", noisy ? json_real(j.trimmed) : json_null());
         return masu_json_write(root, o->json);
     }
-    printf(
-        "relative RMSE %.5f, relMSE %.6f, HDR-FLIP %.5f (p99 %.4f, max %.4f)\n"
-        "mean ratio %.5f, patches: 95th percentile of |ratio - 1| %.5f, largest %.4f at column %u, row %u",
-        e->rmse, e->relmse, flip->mean, flip->p99, flip->max, j.ratio, j.p95, j.worst_by,
-        j.worst % MASU_PATCH_COLUMNS, j.worst / MASU_PATCH_COLUMNS);
+    printf("relative RMSE %.5f, relMSE %.6f, HDR-FLIP %.5f (p99 %.4f, max %.4f)\n"
+           "mean ratio %.5f, patches: 95th percentile of |ratio - 1| %.5f, largest %.4f at column "
+           "%u, row %u",
+           e->rmse, e->relmse, flip->mean, flip->p99, flip->max, j.ratio, j.p95, j.worst_by,
+           j.worst % MASU_PATCH_COLUMNS, j.worst / MASU_PATCH_COLUMNS);
     if (noisy) printf(", trimmed mean of z^2 %.3f", j.trimmed);
     printf("\n");
     return MASU_CLI_OK;

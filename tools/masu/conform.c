@@ -107,10 +107,10 @@ static bool has_scenes(const options *o, const masu_conform_result *results, uin
         missing++;
     }
     if (missing)
-        snprintf(
-            error, size,
-            "%u of %u scenes are not baked in %.2000s (%s): `make scenes` in Masu's source tree bakes them",
-            missing, most, o->scene_folder, names);
+        snprintf(error, size,
+                 "%u of %u scenes are not baked in %.2000s (%s): `make scenes` in Masu's source "
+                 "tree bakes them",
+                 missing, most, o->scene_folder, names);
     if (missing && missing < most) masu_cli_warn("%s", error);
     return !missing || missing < most;
 }
@@ -189,7 +189,8 @@ static int conform(const options *o) {
     char error[1024];
     if (!masu_file_read(o->suite_file, SUITE_BYTES_MAX, &text, &bytes, error, sizeof error))
         return masu_cli_error("%s", error);
-    bool good = masu_suite_parse(o->suite_name, (const char *)text, bytes, &suite, error, sizeof error);
+    bool good =
+        masu_suite_parse(o->suite_name, (const char *)text, bytes, &suite, error, sizeof error);
     const char *hint = good ? "" : masu_file_hint(o->suite_file, text, bytes, MASU_FILE_SUITE);
     free(text);
     if (!good) return masu_cli_error("%s%s", error, hint);
@@ -313,14 +314,15 @@ const masu_cli_command masu_cmd_conform = {
     .name = "conform",
     .arguments = "[--suite NAME|FILE.json] [options]",
     .summary = "run a conformance suite: limits of memory, counts, errors, times and allocations",
-    .details =
-        "Verdicts: pass, quality warning, not supported, resource error, fail. Times are ratios to a fixed\n"
-        "workload whose frames alternate with those of the case. docs/conform.md describes the suites.\n\n"
-        "Exit codes:\n"
-        "  0  no case failed or had a resource error\n"
-        "  1  a case failed or had a resource error, or the suite could not be run\n"
-        "  2  the command line is wrong\n\n"
-        "Examples:\n"
-        "  masu conform\n"
-        "  masu conform --suite full --case 'memory.*' --junit results.xml\n",
+    .details = "Verdicts: pass, quality warning, not supported, resource error, fail. Times are "
+               "ratios to a fixed\n"
+               "workload whose frames alternate with those of the case. docs/conform.md describes "
+               "the suites.\n\n"
+               "Exit codes:\n"
+               "  0  no case failed or had a resource error\n"
+               "  1  a case failed or had a resource error, or the suite could not be run\n"
+               "  2  the command line is wrong\n\n"
+               "Examples:\n"
+               "  masu conform\n"
+               "  masu conform --suite full --case 'memory.*' --junit results.xml\n",
     .run = run};

@@ -64,8 +64,8 @@ static void print_images(const masu_plan_info *p) {
             continue;
         }
         char extent[32], at[48];
-        snprintf(extent, sizeof extent, image->layers > 1 ? "%ux%u x%u" : "%ux%u", image->width, image->height,
-                 image->layers);
+        snprintf(extent, sizeof extent, image->layers > 1 ? "%ux%u x%u" : "%ux%u", image->width,
+                 image->height, image->layers);
         snprintf(at, sizeof at, "%llu-%llu", (unsigned long long)image->offset,
                  (unsigned long long)(image->offset + image->bytes));
         printf("  %-19s %-20s %-11s %10llu  %-22s %s..%s\n", image->name,
@@ -197,11 +197,11 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
         json_t *o = json_pack("{s:s, s:s, s:b}", "name", image->name, "format",
                               format_name(image->format), "used", image->used != 0);
         if (image->used) {
-            json_t *more = json_pack("{s:i, s:i, s:i, s:I, s:I, s:s, s:s}", "width", (int)image->width,
-                                     "height", (int)image->height, "layers", (int)image->layers, "bytes",
-                                     (json_int_t)image->bytes, "offset", (json_int_t)image->offset,
-                                     "first_pass", p->passes[image->first_pass].name, "last_pass",
-                                     p->passes[image->last_pass].name);
+            json_t *more = json_pack(
+                "{s:i, s:i, s:i, s:I, s:I, s:s, s:s}", "width", (int)image->width, "height",
+                (int)image->height, "layers", (int)image->layers, "bytes", (json_int_t)image->bytes,
+                "offset", (json_int_t)image->offset, "first_pass",
+                p->passes[image->first_pass].name, "last_pass", p->passes[image->last_pass].name);
             json_object_update(o, more);
             json_decref(more);
         }
@@ -239,7 +239,8 @@ static int plan(plan_options *o) {
     if (!masu_session_open(&o->d, &s, error, sizeof error)) return masu_cli_error("%s", error);
     masu_plan_info info;
     masu_plan_of(s.m, &info);
-    code = o->json ? print_json(&s, &info, o->d.scene_path) : print_text(&s, &info, o->d.scene_path);
+    code =
+        o->json ? print_json(&s, &info, o->d.scene_path) : print_text(&s, &info, o->d.scene_path);
     code = masu_finish_validation(&s.host, code);
     masu_session_close(&s);
     return code;

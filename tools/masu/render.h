@@ -45,7 +45,8 @@ typedef struct masu_render_options {
 /* render_scene.c: resolves --param and --clip in the scene. On false `error` is one line. */
 bool masu_render_read_scene(masu_render_options *o, char *error, size_t size);
 /* Plays a clip on every model that has clips. */
-bool masu_render_animate(masu_session *s, const masu_render_options *o, double time, char *error, size_t size);
+bool masu_render_animate(masu_session *s, const masu_render_options *o, double time, char *error,
+                         size_t size);
 
 /* render_post.c: the effects on the image, and the colour table's file. On false `error` is one
  * line. */
@@ -62,8 +63,8 @@ typedef struct masu_sample {
 } masu_sample;
 
 /* --stats: JSON of `n` samples and the last frame's counts. Returns an exit code. */
-int masu_render_stats(const masu_session *s, const masu_render_options *o, const masu_sample *samples,
-                      uint32_t n, const masu_stats_info *last);
+int masu_render_stats(const masu_session *s, const masu_render_options *o,
+                      const masu_sample *samples, uint32_t n, const masu_stats_info *last);
 
 /* --times: a CSV row for each frame. Returns an exit code. */
 int masu_render_times(const masu_session *s, const masu_render_options *o,

@@ -49,13 +49,13 @@ static json_t *governor_json(const masu_governor_info *g) {
     for (uint32_t r = 0; r < g->rung_count; r++)
         json_array_append_new(predicted, json_real((double)g->predicted_ms[r]));
     return json_pack("{s:f, s:I, s:I, s:I, s:I, s:i, s:s, s:i, s:s, s:f, s:f, s:f, s:f, s:f, s:o}",
-                     "target_ms", (double)g->target_ms, "samples", (json_int_t)g->samples, "rejected",
-                     (json_int_t)g->rejected, "missed", (json_int_t)g->missed, "changes",
-                     (json_int_t)g->changes, "rung", (int)g->rung, "reason", g->reason_text, "locked",
-                     (int)g->locked, "source", sources[g->source], "fixed_ms", (double)g->fixed_ms,
-                     "load_ms", (double)g->load_ms, "noise", (double)g->noise, "start_delay_ms",
-                     (double)g->start_delay_ms, "vsync_ms", (double)g->vsync_ms, "predicted_ms",
-                     predicted);
+                     "target_ms", (double)g->target_ms, "samples", (json_int_t)g->samples,
+                     "rejected", (json_int_t)g->rejected, "missed", (json_int_t)g->missed,
+                     "changes", (json_int_t)g->changes, "rung", (int)g->rung, "reason",
+                     g->reason_text, "locked", (int)g->locked, "source", sources[g->source],
+                     "fixed_ms", (double)g->fixed_ms, "load_ms", (double)g->load_ms, "noise",
+                     (double)g->noise, "start_delay_ms", (double)g->start_delay_ms, "vsync_ms",
+                     (double)g->vsync_ms, "predicted_ms", predicted);
 }
 
 static json_t *passes_json(const masu_sample *samples, uint32_t n, const masu_plan_info *plan,
@@ -132,19 +132,19 @@ static json_t *allocations_json(const masu_sample *samples, uint32_t n) {
                      (double)callbacks / (double)n);
 }
 
-int masu_render_stats(const masu_session *s, const masu_render_options *o, const masu_sample *samples,
-                      uint32_t n, const masu_stats_info *last) {
+int masu_render_stats(const masu_session *s, const masu_render_options *o,
+                      const masu_sample *samples, uint32_t n, const masu_stats_info *last) {
     double *scratch = malloc(n * sizeof *scratch);
     if (!scratch) return masu_cli_error("out of memory for %u samples", n);
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
     uint32_t rung = last->rung;
     uint32_t width = plan.rungs[rung].render_width, height = plan.rungs[rung].render_height;
-    json_t *root = json_pack("{s:s, s:o, s:{s:i, s:i}, s:{s:i, s:i}, s:i, s:i, s:o}", "scene",
-                             o->d.scene_path, "device", masu_json_device(&s->host), "output", "width",
-                             (int)s->desc.output.width, "height", (int)s->desc.output.height,
-                             "render", "width", (int)width, "height", (int)height, "rung", (int)rung,
-                             "frames_measured", (int)n, "memory", masu_json_memory(&plan.memory));
+    json_t *root = json_pack(
+        "{s:s, s:o, s:{s:i, s:i}, s:{s:i, s:i}, s:i, s:i, s:o}", "scene", o->d.scene_path, "device",
+        masu_json_device(&s->host), "output", "width", (int)s->desc.output.width, "height",
+        (int)s->desc.output.height, "render", "width", (int)width, "height", (int)height, "rung",
+        (int)rung, "frames_measured", (int)n, "memory", masu_json_memory(&plan.memory));
     json_object_set_new(root, "wall_ms",
                         times_json(samples, n, offsetof(masu_sample, wall_ms), scratch));
     if (last->timed) {
@@ -153,7 +153,8 @@ int masu_render_stats(const masu_session *s, const masu_render_options *o, const
         json_object_set_new(root, "timestamps_plausible", json_boolean(plausible(samples, n)));
     }
     json_object_set_new(root, "passes", passes_json(samples, n, &plan, last, scratch));
-    if (last->exposure > 0.0f) json_object_set_new(root, "exposure", json_real((double)last->exposure));
+    if (last->exposure > 0.0f)
+        json_object_set_new(root, "exposure", json_real((double)last->exposure));
     if (o->target_ms > 0.0) json_object_set_new(root, "governor", governor_json(&last->governor));
     json_object_set_new(root, "counts", counts_json(last, (double)width * (double)height));
     json_object_set_new(root, "views", views_json(last));
@@ -165,7 +166,8 @@ int masu_render_stats(const masu_session *s, const masu_render_options *o, const
 
 /* ---- The governor ---------------------------------------------------------------------------- */
 
-int masu_render_times(const masu_session *s, const masu_render_options *o, const masu_sample *samples) {
+int masu_render_times(const masu_session *s, const masu_render_options *o,
+                      const masu_sample *samples) {
     char *text = NULL;
     size_t bytes = 0;
     FILE *f = open_memstream(&text, &bytes);
@@ -183,8 +185,8 @@ int masu_render_times(const masu_session *s, const masu_render_options *o, const
     return code;
 }
 
-void masu_render_governor(const masu_session *s, const masu_render_options *o, const masu_sample *samples,
-                            const masu_governor_info *g) {
+void masu_render_governor(const masu_session *s, const masu_render_options *o,
+                          const masu_sample *samples, const masu_governor_info *g) {
     static const char *const sources[] = {"nothing", "timestamps", "the wall clock"};
     double scale = 0.0;
     uint32_t over = 0;
@@ -213,4 +215,3 @@ void masu_render_governor(const masu_session *s, const masu_render_options *o, c
     printf("  last: rung %" PRIu32 ": %s%s\n", g->rung, g->reason_text,
            g->locked ? " (locked: it cannot change to the rung that it wants)" : "");
 }
-

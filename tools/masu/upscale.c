@@ -74,17 +74,20 @@ static bool fill_transparent(struct masu_image *image) {
     if (!filled_in) return false;
     for (int i = 0; i < width * height; i++) filled_in[i] = image->rgba[4 * i + 3] ? 0 : NONE;
     for (int at = 0; at < REACH * width * height; at++) {
-        int round = at / (width * height) + 1, i = at % (width * height), x = i % width, y = i / width;
+        int round = at / (width * height) + 1, i = at % (width * height), x = i % width,
+            y = i / width;
         unsigned sum[3] = {0}, count = 0;
         if (filled_in[i] != NONE) continue;
         for (int k = 0; k < 9; k++) {
             int u = x + k % 3 - 1, v = y + k / 3 - 1;
-            if (u < 0 || v < 0 || u >= width || v >= height || filled_in[v * width + u] >= round) continue;
+            if (u < 0 || v < 0 || u >= width || v >= height || filled_in[v * width + u] >= round)
+                continue;
             for (int c = 0; c < 3; c++) sum[c] += image->rgba[4 * (v * width + u) + c];
             count++;
         }
         if (!count) continue;
-        for (int c = 0; c < 3; c++) image->rgba[4 * i + c] = (uint8_t)((sum[c] + count / 2) / count);
+        for (int c = 0; c < 3; c++)
+            image->rgba[4 * i + c] = (uint8_t)((sum[c] + count / 2) / count);
         filled_in[i] = (uint8_t)round;
     }
     free(filled_in);
@@ -192,15 +195,16 @@ const masu_cli_command masu_cmd_upscale = {
     .name = "upscale",
     .arguments = "IN.png OUT.png --size WxH|--aa MODE [options]",
     .summary = "upscale an image with FSR1 (EASU, RCAS) or anti-alias it with SMAA or FXAA",
-    .details =
-        "The input must be display-encoded (sRGB), as FSR1 expects. Alpha goes through the same passes\n"
-        "as a separate image; pixels with alpha 0 take the colours beside them. With --aa and no --size, or with --size equal to the input's size, only\n"
-        "anti-aliasing runs.\n\n"
-        "Exit codes:\n"
-        "  0  success\n"
-        "  1  a pass failed, or a file could not be read or written\n"
-        "  2  the command line is wrong\n\n"
-        "Examples:\n"
-        "  masu upscale small.png large.png --size 1920x1080\n"
-        "  masu upscale jagged.png smooth.png --aa smaa-high\n",
+    .details = "The input must be display-encoded (sRGB), as FSR1 expects. Alpha goes through the "
+               "same passes\n"
+               "as a separate image; pixels with alpha 0 take the colours beside them. With --aa "
+               "and no --size, or with --size equal to the input's size, only\n"
+               "anti-aliasing runs.\n\n"
+               "Exit codes:\n"
+               "  0  success\n"
+               "  1  a pass failed, or a file could not be read or written\n"
+               "  2  the command line is wrong\n\n"
+               "Examples:\n"
+               "  masu upscale small.png large.png --size 1920x1080\n"
+               "  masu upscale jagged.png smooth.png --aa smaa-high\n",
     .run = run};

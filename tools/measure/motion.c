@@ -28,7 +28,8 @@ bool masu_motion_draw(masu_session *s, const masu_motion *motion, uint32_t rung,
     while (period > 1 && (*next + frames) % period) frames++;
     for (uint32_t k = 0; k < frames; k++) {
         double time = motion->time - (double)(frames - 1 - k) * motion->step;
-        if (!masu_motion_frame(s, rung, time, motion->step, k == 0, &commands, error, error_size)) return false;
+        if (!masu_motion_frame(s, rung, time, motion->step, k == 0, &commands, error, error_size))
+            return false;
     }
     *next = commands.frame + 1;
     return true;

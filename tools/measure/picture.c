@@ -133,10 +133,12 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
 /* After a cut, live probes have traced all their ray sets after 20 rounds; in the other 236 the
  * bounces between probes converge. */
 int masu_picture_settles(const masu_stats_info *stats) {
-    return stats->local_shadow_waiting || stats->local_shadow_faces || stats->bounce_rounds_left > 236;
+    return stats->local_shadow_waiting || stats->local_shadow_faces ||
+           stats->bounce_rounds_left > 236;
 }
 
-static bool settle_lights(masu_session *s, const masu_frame_desc *frame, char *error, size_t error_size) {
+static bool settle_lights(masu_session *s, const masu_frame_desc *frame, char *error,
+                          size_t error_size) {
     enum { FRAMES_MAX = 256 };
     masu_stats_info stats = {.local_shadow_waiting = 1};
     const masu_scene_data *scene = masu_scene_data_of(&s->scene);

@@ -58,7 +58,8 @@ static uint32_t row_of(double roughness) {
 
 static albedo albedo_of(uint32_t row, double cosine) {
     double at = sqrt(cosine) * (MASU_TABLE_SIZE - 1), left = fmin(floor(at), MASU_TABLE_SIZE - 2);
-    const uint32_t *node = masu_split_sum + MASU_TABLE_LOSS + row * MASU_TABLE_SIZE + (uint32_t)left;
+    const uint32_t *node =
+        masu_split_sum + MASU_TABLE_LOSS + row * MASU_TABLE_SIZE + (uint32_t)left;
     double lost = mix(node[0] & 0xFFFF, node[1] & 0xFFFF, at - left) / 65535;
     return (albedo){1 - lost, mix(node[0] >> 16, node[1] >> 16, at - left) / 65535};
 }

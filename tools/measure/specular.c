@@ -44,12 +44,14 @@ static bool place(masu_session *s, const masu_specular_run *run, uint32_t frame,
     return masu_instance_set_transform(s->m, run->object, rows, NULL) == MASU_OK;
 }
 
-static double difference(const uint8_t *a, const uint8_t *b, const uint8_t *classes, uint32_t pixels) {
+static double difference(const uint8_t *a, const uint8_t *b, const uint8_t *classes,
+                         uint32_t pixels) {
     double sum = 0;
     uint32_t count = 0;
     for (uint32_t i = 0; i < pixels; i++) {
         if (classes[i] == 0xFF) continue;
-        for (int k = 0; k < 3; k++) sum += abs((int)a[4 * i + (uint32_t)k] - (int)b[4 * i + (uint32_t)k]);
+        for (int k = 0; k < 3; k++)
+            sum += abs((int)a[4 * i + (uint32_t)k] - (int)b[4 * i + (uint32_t)k]);
         count += 3;
     }
     return count ? sum / count : 0;
@@ -67,7 +69,8 @@ bool masu_specular_draw(masu_session *s, const masu_specular_run *run, float *rg
     for (uint32_t k = 0; k < total && good; k++) {
         masu_camera camera;
         double time = run->time;
-        if (run->motion == MASU_SPECULAR_CAMERA) time -= (double)(total - 1 - k) * (double)run->step;
+        if (run->motion == MASU_SPECULAR_CAMERA)
+            time -= (double)(total - 1 - k) * (double)run->step;
         if (masu_camera_at(s->m, time, &camera, NULL) || !place(s, run, k, total - 1 - k)) {
             snprintf(error, error_size, "no camera, or nothing to move");
             good = false;

@@ -15,7 +15,9 @@ static double clamped(double x, double low, double high) {
 static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
 
 /* Quantizes x in 0..1 to one of `steps` + 1 levels. */
-static uint32_t level_of(double x, double steps) { return (uint32_t)(clamped(x, 0, 1) * steps + 0.5); }
+static uint32_t level_of(double x, double steps) {
+    return (uint32_t)(clamped(x, 0, 1) * steps + 0.5);
+}
 
 static bool emits(const double material[8]) { return brightest_of(material + 4) >= least; }
 
@@ -97,7 +99,8 @@ void masu_texel_pack_met(const double m[8], uint8_t texel[4], uint32_t *normal) 
     uint32_t channel = glow[0] >= most ? 0 : glow[1] >= most ? 1 : 2;
     uint32_t next = level_of(sqrt(glow[(channel + 1) % 3] / most), 12);
     uint32_t last = level_of(sqrt(glow[(channel + 2) % 3] / most), 12);
-    uint32_t word = level_of(sqrt(sqrt(most / range)), 127) << 16 | ((channel * 13 + next) * 13 + last) << 23;
+    uint32_t word =
+        level_of(sqrt(sqrt(most / range)), 127) << 16 | ((channel * 13 + next) * 13 + last) << 23;
     for (int c = 0; c < 3; c++) word |= level_of(sqrt(clamped(m[c], 0, 1)), 31) << 5 * c;
     if (m[7] >= 0.5) word |= 1u << 15;
     memcpy(texel, &word, sizeof word);

@@ -20,10 +20,10 @@ static int run(masu_cli *cli) {
                 masu_meso_author(&patch, &r.options, &made) &&
                 masu_meso_write_curves(r.output, &made) && masu_meso_write_maps(r.output, &made);
     if (good && !masu_cli_quiet()) {
-        printf(
-            "%s: error of the fit, relative to the mean radiance: mean texel %.3f, single texels %.3f, "
-            "filtered texels %.3f\n",
-            r.output, made.misfit.far, made.misfit.near, made.misfit.filtered);
+        printf("%s: error of the fit, relative to the mean radiance: mean texel %.3f, single "
+               "texels %.3f, "
+               "filtered texels %.3f\n",
+               r.output, made.misfit.far, made.misfit.near, made.misfit.filtered);
     }
     masu_meso_patch_free(&patch);
     masu_meso_material_free(&made);

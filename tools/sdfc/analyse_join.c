@@ -49,7 +49,8 @@ static bool ends_somewhere(const sdfc_box *b) {
 
 sdfc_facts sdfc_joined_facts(sdfc *c, sdfc_shape *s) {
     bool level = levelled(c, s);
-    bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION || s->kind >= SDFC_KIND_CHAMFER;
+    bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION ||
+                    s->kind >= SDFC_KIND_CHAMFER;
     bool is_cut = s->kind == SDFC_KIND_DIFFERENCE || s->kind == SDFC_KIND_SMOOTH_DIFFERENCE;
     sdfc_facts f = {0};
     int boxes = 0;
@@ -95,11 +96,13 @@ sdfc_facts sdfc_joined_facts(sdfc *c, sdfc_shape *s) {
         sdfc_fail(c, s->token, "blend: expected a radius above 0");
     }
     if (s->kind == SDFC_KIND_CHAMFER || s->kind == SDFC_KIND_STAIRS) {
-        if (sdfc_low(c, s->number[0]) < 0) sdfc_fail(c, s->token, "%s: expected a width from 0", sdfc_kinds[s->kind].name);
+        if (sdfc_low(c, s->number[0]) < 0)
+            sdfc_fail(c, s->token, "%s: expected a width from 0", sdfc_kinds[s->kind].name);
     }
     if (s->kind == SDFC_KIND_STAIRS)
         s->number[1] = sdfc_apply2(c, SDFC_mul, s->number[0], sdfc_number(c, 1.0 / s->whole[0]));
-    else if (s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_INTERSECTION && s->kind != SDFC_KIND_DIFFERENCE)
+    else if (s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_INTERSECTION &&
+             s->kind != SDFC_KIND_DIFFERENCE)
         s->number[1] = sdfc_apply1(c, SDFC_rcp, s->number[0]);
     return f;
 }

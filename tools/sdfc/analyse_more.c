@@ -22,7 +22,8 @@ static sdfc_facts endless(unsigned symmetric) {
 }
 
 static void need_above(sdfc *c, const sdfc_shape *s, int e, const char *what) {
-    if (!(sdfc_low(c, e) > 0)) sdfc_fail(c, s->token, "%s: expected %s above 0", sdfc_kinds[s->kind].name, what);
+    if (!(sdfc_low(c, e) > 0))
+        sdfc_fail(c, s->token, "%s: expected %s above 0", sdfc_kinds[s->kind].name, what);
 }
 
 static void need_angle(sdfc *c, const sdfc_shape *s, int e) {
@@ -31,7 +32,8 @@ static void need_angle(sdfc *c, const sdfc_shape *s, int e) {
 }
 
 /* Bounds around `count` points of n numbers each; point i has the radius radii[i]. */
-static sdfc_facts around_points(const sdfc *c, const int *n, int count, int numbers, const int *radii) {
+static sdfc_facts around_points(const sdfc *c, const int *n, int count, int numbers,
+                                const int *radii) {
     double low[3] = {-SDFC_INFINITY, -SDFC_INFINITY, -SDFC_INFINITY}, high[3];
     for (int k = 0; k < 3; k++) high[k] = SDFC_INFINITY;
     for (int k = 0; k < numbers; k++) {
@@ -90,20 +92,23 @@ static sdfc_facts cut_sphere_facts(sdfc *c, sdfc_shape *s) {
         sdfc_fail(c, s->token, "cut_sphere: expected a height within the radius");
     }
     double x = h > 0 ? sqrt(r * r - h * h) : r;
-    int squares = sdfc_apply2(c, SDFC_sub, sdfc_apply2(c, SDFC_mul, n[0], n[0]), sdfc_apply2(c, SDFC_mul, n[1], n[1]));
+    int squares = sdfc_apply2(c, SDFC_sub, sdfc_apply2(c, SDFC_mul, n[0], n[0]),
+                              sdfc_apply2(c, SDFC_mul, n[1], n[1]));
     n[2] = sdfc_apply1(c, SDFC_sqrt, squares);
     return within((double[3]){-x, h, -x}, (double[3]){x, r, x}, 5);
 }
 
 /* Flat ones end along x and y. */
 static sdfc_facts flat(double x, double low, double high, unsigned symmetric) {
-    return within((double[3]){-x, low, -SDFC_INFINITY}, (double[3]){x, high, SDFC_INFINITY}, symmetric);
+    return within((double[3]){-x, low, -SDFC_INFINITY}, (double[3]){x, high, SDFC_INFINITY},
+                  symmetric);
 }
 
 static sdfc_facts polygon_facts(sdfc *c, sdfc_shape *s) {
     int *n = s->number, sides = s->whole[0];
     double half = PI / sides;
-    if (sides < 3) sdfc_fail(c, s->token, "%s: expected at least 3 sides", sdfc_kinds[s->kind].name);
+    if (sides < 3)
+        sdfc_fail(c, s->token, "%s: expected at least 3 sides", sdfc_kinds[s->kind].name);
     need_above(c, s, n[0], "a radius");
     unsigned mirrors = sides % 2 ? 5 : 7;
     double r = sdfc_high(c, n[0]);
@@ -146,7 +151,8 @@ static sdfc_facts julia_facts(const sdfc *c, const sdfc_shape *s) {
 static sdfc_facts mandelbox_facts(sdfc *c, const sdfc_shape *s) {
     double k = c->exprs[s->number[0]].value, r = k > 0 ? 2 * (k + 1) / (k - 1) : 4;
     if (!sdfc_constant(c, s->number[0]) || !(fabs(k) >= 1.2 && fabs(k) <= 3)) {
-        sdfc_fail(c, s->token, "mandelbox: expected a constant factor from -3 to -1.2 or from 1.2 to 3");
+        sdfc_fail(c, s->token,
+                  "mandelbox: expected a constant factor from -3 to -1.2 or from 1.2 to 3");
     }
     sdfc_facts f = sdfc_solid(r, r, r, 0);
     f.lipschitz = 1.5;

@@ -242,11 +242,11 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
         int cells = cells_of(even, f->rising >> i & 1, h, period, row);
         if (!cells) {
             double most = (SDFC_CELLS_MAX / 2 - (even ? 0 : GAP)) * period;
-            sdfc_fail(
-                c, s->token,
-                "%s: the shape reaches %g from the centre of its cell along %c: expected at most %g, "
-                "%g times the period",
-                sdfc_kinds[s->kind].name, h, 'x' + i, most, most / period);
+            sdfc_fail(c, s->token,
+                      "%s: the shape reaches %g from the centre of its cell along %c: expected at "
+                      "most %g, "
+                      "%g times the period",
+                      sdfc_kinds[s->kind].name, h, 'x' + i, most, most / period);
         }
         s->extra[i] = cells;
         f->cost *= cells;
@@ -463,10 +463,10 @@ static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
                   most * x);
     }
     if (!(inner <= 0.99)) {
-        sdfc_fail(
-            c, s->token,
-            "bend: y times the rate reaches %g: expected at most 0.99, inside the centre of the arc",
-            inner);
+        sdfc_fail(c, s->token,
+                  "bend: y times the rate reaches %g: expected at most 0.99, inside the centre of "
+                  "the arc",
+                  inner);
     }
     double margin = fmin(0.25 * fmax(sdfc_reach(f, 0, 1), 1e-3),
                          1e-3 * (1 - fmax(inner, 0)) / fmax(most, 1e-9));

@@ -131,7 +131,8 @@ static unsigned rising(int kind, const double least[3]) {
 static sdfc_facts facts_of(sdfc *c, sdfc_shape *s) {
     int *n = s->number;
     double a = 0, b = 0, d = 0;
-    if (s->kind >= SDFC_KIND_ROUND_CONE && s->kind <= SDFC_KIND_TERRAIN) return sdfc_more_facts(c, s);
+    if (s->kind >= SDFC_KIND_ROUND_CONE && s->kind <= SDFC_KIND_TERRAIN)
+        return sdfc_more_facts(c, s);
     if (s->kind >= SDFC_KIND_APOLLONIAN && s->kind <= SDFC_KIND_JULIA) return sdfc_more_facts(c, s);
     if (s->kind != SDFC_KIND_MENGER && s->kind != SDFC_KIND_SIERPINSKI &&
         s->kind != SDFC_KIND_MANDELBULB && s->kind != SDFC_KIND_USER) {

@@ -37,12 +37,13 @@ static void note_cell(uint64_t *cells, int op, const double *a, double result) {
     *cells = (*cells ^ (uint64_t)(int64_t)fmax(fmin(cell, 1e15), -1e15)) * 0x100000001B3u;
 }
 
-static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
-                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells);
+static double run_function(const sdfc *c, const sdfc_program *p, int function,
+                           const double point[3], const double *inputs, const sdfc_place_of *at,
+                           double *variables, uint64_t *cells);
 
 /* The least of the values at the points, or with `nearest` the number of the point that has it. */
-static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i, const double *a, bool nearest,
-                       double *variables, uint64_t *cells) {
+static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i, const double *a,
+                       bool nearest, double *variables, uint64_t *cells) {
     double least = 1e30, number = 0;
     for (int n = 0; n < i->points; n++) {
         double q[3], inputs[SDFC_OPERANDS_MAX];
@@ -63,22 +64,27 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
     return nearest ? number : least;
 }
 
-static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
-                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells) {
+static double run_function(const sdfc *c, const sdfc_program *p, int function,
+                           const double point[3], const double *inputs, const sdfc_place_of *at,
+                           double *variables, uint64_t *cells) {
     const sdfc_function *f = &p->functions[function];
     double *v = variables + f->first_variable;
     for (int k = 0; k < 3; k++) v[k] = point[k];
     for (int k = 0; k < f->count; k++) {
         const sdfc_instr *i = &f->instrs[k];
         bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
-        int count = !calls ? sdfc_ops[i->op].operands : i->named || i->around ? SDFC_OPERANDS_MAX : 12;
+        int count = !calls                  ? sdfc_ops[i->op].operands
+                    : i->named || i->around ? SDFC_OPERANDS_MAX
+                                            : 12;
         double a[SDFC_OPERANDS_MAX] = {0}, r = 1e30;
         for (int j = 0; j < count; j++) {
             a[j] = i->operand[j] >= 0 ? v[i->operand[j]] : c->values[p->args[~i->operand[j]]];
         }
         switch (i->op) {
         case SDFC_CALL_MIN:
-        case SDFC_CALL_NEAREST: r = run_call(c, p, i, a, i->op == SDFC_CALL_NEAREST, variables, cells); break;
+        case SDFC_CALL_NEAREST:
+            r = run_call(c, p, i, a, i->op == SDFC_CALL_NEAREST, variables, cells);
+            break;
         case SDFC_CALL_USER: break;
         case SDFC_INPUT: r = inputs[k]; break;
         case SDFC_NORMAL: r = at ? at->normal[i->aux] : 0; break;
@@ -100,8 +106,8 @@ double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], dou
     return run_function(c, p, 0, p3, NULL, NULL, room, NULL);
 }
 
-void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], const sdfc_place_of *at, double *room,
-                   double out[8]) {
+void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3],
+                   const sdfc_place_of *at, double *room, double out[8]) {
     const sdfc_program *p = &part->program;
     if (p->surface) run_function(c, p, p->surface, p3, NULL, at, room, NULL);
     for (int k = 0; k < 8; k++) {
@@ -109,7 +115,8 @@ void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], con
         if (!p->surface)
             out[k] = c->values[c->materials[part->material].value[k]];
         else
-            out[k] = operand >= 0 ? room[p->functions[p->surface].first_variable + operand] : c->values[p->args[~operand]];
+            out[k] = operand >= 0 ? room[p->functions[p->surface].first_variable + operand]
+                                  : c->values[p->args[~operand]];
     }
 }
 

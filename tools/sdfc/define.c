@@ -33,7 +33,8 @@ void sdfc_parse_def(sdfc *c) {
     sdfc_def d = {.symbols = c->symbol_count};
     sdfc_need_mark(c, '(');
     for (bool more = !sdfc_mark(c, ')'); more;) {
-        if (d.count == SDFC_ARGUMENTS_MAX) sdfc_fail(c, c->at, "expected at most %d arguments", SDFC_ARGUMENTS_MAX);
+        if (d.count == SDFC_ARGUMENTS_MAX)
+            sdfc_fail(c, c->at, "expected at most %d arguments", SDFC_ARGUMENTS_MAX);
         d.argument[d.count] = sdfc_need_name(c, "an argument", true);
         if (sdfc_mark(c, '=')) {
             d.fallback[d.count] = c->at;
@@ -48,7 +49,8 @@ void sdfc_parse_def(sdfc *c) {
     d.is_shape = sdfc_begins_shape(c);
     skip_to(c, ";");
     sdfc_need_mark(c, ';');
-    c->defs = sdfc_grow(c, c->defs, c->def_count, &c->def_capacity, sizeof *c->defs, SDFC_SYMBOLS_MAX, "defs");
+    c->defs = sdfc_grow(c, c->defs, c->def_count, &c->def_capacity, sizeof *c->defs,
+                        SDFC_SYMBOLS_MAX, "defs");
     c->defs[c->def_count] = d;
     sdfc_declare(c, name, SYMBOL_DEF)->index = c->def_count++;
 }
@@ -84,12 +86,14 @@ int sdfc_call_def(sdfc *c, int def, int token, sdfc_value *v) {
     sdfc_enter(c);
     c->open_kind = -1;
     for (bool more = !sdfc_mark(c, ')'); more;) {
-        if (count == d.count) sdfc_fail(c, c->at, "expected %d argument%s", d.count, d.count == 1 ? "" : "s");
+        if (count == d.count)
+            sdfc_fail(c, c->at, "expected %d argument%s", d.count, d.count == 1 ? "" : "s");
         arguments[count++] = parse_given(c);
         more = sdfc_mark(c, ',');
         if (!more) sdfc_need_mark(c, ')');
     }
-    int after = c->at, symbols = c->symbol_count, from = c->hidden_from, to = c->hidden_to, caller = c->call_token;
+    int after = c->at, symbols = c->symbol_count, from = c->hidden_from, to = c->hidden_to,
+        caller = c->call_token;
     c->hidden_from = d.symbols;
     c->hidden_to = symbols;
     if (caller < 0) c->call_token = token;
@@ -97,8 +101,8 @@ int sdfc_call_def(sdfc *c, int def, int token, sdfc_value *v) {
         if (i >= count) {
             if (!d.fallback[i]) {
                 const sdfc_token *t = &c->tokens[d.argument[i]];
-                sdfc_fail(c, token, "expected %d arguments, found %d: \"%.*s\" has no default", d.count, count,
-                          (int)t->length, c->text + t->offset);
+                sdfc_fail(c, token, "expected %d arguments, found %d: \"%.*s\" has no default",
+                          d.count, count, (int)t->length, c->text + t->offset);
             }
             c->at = d.fallback[i];
             arguments[i] = parse_given(c);
@@ -144,7 +148,8 @@ bool sdfc_local_name(sdfc *c, int token, sdfc_value *v) {
         if (!sdfc_token_is(c, token, names[i].name)) continue;
         bool positive = names[i].op == SDFC_TRAP || names[i].op == SDFC_FOOTPRINT;
         for (int k = 0; k < 3; k++) {
-            v->e[k] = k < names[i].count ? sdfc_leaf(c, names[i].op, k, 0, positive ? 0 : -names[i].most, names[i].most)
+            v->e[k] = k < names[i].count ? sdfc_leaf(c, names[i].op, k, 0,
+                                                     positive ? 0 : -names[i].most, names[i].most)
                                          : v->e[0];
         }
         v->count = names[i].count;
@@ -162,7 +167,9 @@ sdfc_value sdfc_parse_cell(sdfc *c, int token, const sdfc_symbol *s) {
         return (sdfc_value){1, {e, e, e}};
     }
     if (!dot || !sdfc_word(c, "hash")) {
-        sdfc_expected(c, c->at, sectors ? "\".index\", or \".hash(\", a number and \")\"" : "\".hash(\", a number and \")\"");
+        sdfc_expected(c, c->at,
+                      sectors ? "\".index\", or \".hash(\", a number and \")\""
+                              : "\".hash(\", a number and \")\"");
     }
     sdfc_need_mark(c, '(');
     int channel = (int)sdfc_parse_whole(c, 0, 1000);

@@ -21,9 +21,11 @@ static void put_c_field(sdfc_writer *w) {
 /* Forms whose material is not the same everywhere. */
 static void put_c_look(sdfc_writer *w) {
     sdfc *c = w->c;
-    PUT(w, "static int looks(int part, const double p[3], double out[8])\n{\n"
-           "    uint base = (uint)slot[part * %u + 6];\n    (void)base;\n    (void)p;\n    (void)out;\n"
-           "    switch ((int)slot[part * %u + 5]) {\n",
+    PUT(w,
+        "static int looks(int part, const double p[3], double out[8])\n{\n"
+        "    uint base = (uint)slot[part * %u + 6];\n    (void)base;\n    (void)p;\n    "
+        "(void)out;\n"
+        "    switch ((int)slot[part * %u + 5]) {\n",
         MASU_SDFC_PART_SLOTS, MASU_SDFC_PART_SLOTS);
     for (int g = 0; g < c->group_count; g++) {
         if (!sdfc_group_truth(c, g) || !c->parts[c->groups[g].first_part].program.surface) continue;
@@ -75,7 +77,8 @@ static const char c_api[] =
     "    double step, distance;\n"
     "    return nearest(params, time, p, &step, &distance);\n"
     "}\n\n"
-    "/* a part's albedo, roughness, emissive, metallic at a point, with a normal and the width of a pixel there */\n"
+    "/* a part's albedo, roughness, emissive, metallic at a point, with a normal and the width of "
+    "a pixel there */\n"
     "void masu_truth_look(const double *params, double time, int part, const double p[3],\n"
     "                     const double n[3], double width, double out[8])\n"
     "{\n"

@@ -16,14 +16,18 @@ static void put_terms_on(sdfc_writer *w, const sdfc_group *group, bool several) 
         PUT(w, "0xFFFFFFFFu");
     else if (several)
         PUT(w, "masu_term_bits(%d) >> (%uu + (part - %uu) * %uu)", group->first_term / 32,
-            (unsigned)group->first_term % 32, (unsigned)group->first_part, (unsigned)group->term_count);
+            (unsigned)group->first_term % 32, (unsigned)group->first_part,
+            (unsigned)group->term_count);
     else
-        PUT(w, "masu_term_bits(%d) >> %uu", group->first_term / 32, (unsigned)group->first_term % 32);
+        PUT(w, "masu_term_bits(%d) >> %uu", group->first_term / 32,
+            (unsigned)group->first_term % 32);
 }
 
 /* The last slot at which the arguments of a part of group g can begin. The actual first slot is
  * read from data. */
-static uint32_t last_base(const sdfc *c, int g) { return c->slot_count - (uint32_t)c->groups[g].slot_count; }
+static uint32_t last_base(const sdfc *c, int g) {
+    return c->slot_count - (uint32_t)c->groups[g].slot_count;
+}
 
 /* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has
  * several. */
@@ -45,7 +49,8 @@ static void put_part_value(sdfc_writer *w, int g, const char *name, const char *
     }
     PUT(w, "        uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
     PUT(w, "        uint base = min(uint(masu_slot(record + 6u)), %uu);\n", last_base(c, g));
-    PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, base, ", name, g, point, point, point);
+    PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, base, ", name, g, point, point,
+        point);
     put_terms_on(w, group, true);
     PUT(w, ") * masu_slot(record + 4u);\n");
 }
@@ -76,7 +81,8 @@ static void put_slot_base(sdfc_writer *w, int g) {
     if (group->part_count == 1)
         PUT(w, "%uu", w->c->parts[group->first_part].slot_base);
     else
-        PUT(w, "min(uint(masu_slot(part * %uu + 6u)), %uu)", MASU_SDFC_PART_SLOTS, last_base(w->c, g));
+        PUT(w, "min(uint(masu_slot(part * %uu + 6u)), %uu)", MASU_SDFC_PART_SLOTS,
+            last_base(w->c, g));
 }
 
 /* Half-spaces along a ray, and their normals. No part has a field that is not a number. */
@@ -154,13 +160,15 @@ static void put_glsl_dispatch(sdfc_writer *w) {
     PUT(w, "    float safe = masu_slot(record + 4u);\n");
     PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
     if (c->group_count == 1) {
-        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, min(base, %uu), 0xFFFFFFFFu) * safe;\n}\n\n", last_base(c, 0));
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, min(base, %uu), 0xFFFFFFFFu) * safe;\n}\n\n",
+            last_base(c, 0));
         return;
     }
     PUT(w, "    float d = 1e30;\n    switch (uint(masu_slot(record + 5u))) {\n");
     for (int g = 0; g < c->group_count; g++) {
-        PUT(w, "    case %du: d = masu_shape_%d(p.x, p.y, p.z, min(base, %uu), 0xFFFFFFFFu); break;\n", g, g,
-            last_base(c, g));
+        PUT(w,
+            "    case %du: d = masu_shape_%d(p.x, p.y, p.z, min(base, %uu), 0xFFFFFFFFu); break;\n",
+            g, g, last_base(c, g));
     }
     PUT(w, "    }\n    return d * safe;\n}\n\n");
 }
@@ -192,17 +200,18 @@ static bool is_estimate(const sdfc *c, const sdfc_group *group) {
 static void put_keep(sdfc_writer *w, const sdfc_group *group) {
     bool several = group->part_count > 1;
     if (is_estimate(w->c, group))
-        PUT(w, "        MASU_KEEP_ESTIMATE(sure, part, masu_slot(part * %uu + 4u) * (%.9g))\n", MASU_SDFC_PART_SLOTS,
-            least_growth(w->c, group));
+        PUT(w, "        MASU_KEEP_ESTIMATE(sure, part, masu_slot(part * %uu + 4u) * (%.9g))\n",
+            MASU_SDFC_PART_SLOTS, least_growth(w->c, group));
     else if (several)
         PUT(w, "        MASU_KEEP_PART(d, f, part >> 5, 1u << (part & 31u))\n");
     else
-        PUT(w, "        MASU_KEEP_PART(d, f, %uu, 0x%xu)\n", (unsigned)group->first_part / 32, 1u << group->first_part % 32);
+        PUT(w, "        MASU_KEEP_PART(d, f, %uu, 0x%xu)\n", (unsigned)group->first_part / 32,
+            1u << group->first_part % 32);
     if (!group->term_count) return;
     PUT(w, "        MASU_KEEP_TERMS(%d, ", group->first_term / 32);
     if (several)
-        PUT(w, "%uu + (part - %uu) * %uu)\n", (unsigned)group->first_term % 32, (unsigned)group->first_part,
-            (unsigned)group->term_count);
+        PUT(w, "%uu + (part - %uu) * %uu)\n", (unsigned)group->first_term % 32,
+            (unsigned)group->first_part, (unsigned)group->term_count);
     else
         PUT(w, "%uu)\n", (unsigned)group->first_term % 32);
 }
@@ -305,7 +314,8 @@ static void put_listed_group(sdfc_writer *w, int g) {
     PUT(w, any_estimate(c) ? "        MASU_KEEP_PART(0.0, 0.0, i >> 5, 1u << (i & 31u))\n"
                            : "        MASU_KEEP_PART(d, f, i >> 5, 1u << (i & 31u))\n");
     put_least(w);
-    PUT(w, "        i = masu_next_place(i);\n        part = i < count ? masu_part_at(i) : 0xFFFFFFFFu;\n    }\n");
+    PUT(w, "        i = masu_next_place(i);\n        part = i < count ? masu_part_at(i) : "
+           "0xFFFFFFFFu;\n    }\n");
 }
 
 /* One loop per form: on a driver that executes all arms of a switch and masks their writes, a part
@@ -390,8 +400,10 @@ static void put_moving(sdfc_writer *w) {
         if (i < MASU_SDFC_MASKED_MAX) bits[i / 32] |= 1u << i % 32;
         runs += i == 0 || !part_moves(c, i - 1);
     }
-    PUT(w, "#ifdef MASU_MOTION\n#define MASU_SDF_MOVING %d\n#define MASU_SDF_MOVING_FLAT %d\n", some, flat);
-    PUT(w, "uint masu_sdf_moving_bits(int word)\n{\n    return word == 0 ? 0x%xu : 0x%xu;\n}\n\n", bits[0], bits[1]);
+    PUT(w, "#ifdef MASU_MOTION\n#define MASU_SDF_MOVING %d\n#define MASU_SDF_MOVING_FLAT %d\n",
+        some, flat);
+    PUT(w, "uint masu_sdf_moving_bits(int word)\n{\n    return word == 0 ? 0x%xu : 0x%xu;\n}\n\n",
+        bits[0], bits[1]);
     PUT(w, "bool masu_sdf_part_moves(uint part)\n{\n    return ");
     for (int i = 0; i < c->part_count && runs && runs <= RUNS; i++) {
         if (!part_moves(c, i) || (i > 0 && part_moves(c, i - 1))) continue;
@@ -413,9 +425,11 @@ static void put_roots(sdfc_writer *w) {
     for (int g = 0; g < c->group_count; g++) {
         const sdfc_program *p = &c->parts[c->groups[g].first_part].program;
         if (!c->groups[g].moves) continue;
-        PUT(w, "    if (form == %du && !out_of) {\n        uint base = min(first, %uu);\n", g, last_base(c, g));
+        PUT(w, "    if (form == %du && !out_of) {\n        uint base = min(first, %uu);\n", g,
+            last_base(c, g));
         for (int i = 0; i < p->root_count; i++) put_root_step(w, g, &p->root[i], false);
-        PUT(w, "    }\n    if (form == %du && out_of) {\n        uint base = min(first, %uu);\n", g, last_base(c, g));
+        PUT(w, "    }\n    if (form == %du && out_of) {\n        uint base = min(first, %uu);\n", g,
+            last_base(c, g));
         for (int i = p->root_count; i-- > 0;) put_root_step(w, g, &p->root[i], true);
         PUT(w, "    }\n");
     }
@@ -448,7 +462,9 @@ static void put_looks(sdfc_writer *w) {
     for (int g = 0; g < c->group_count; g++) {
         const sdfc_group *group = &c->groups[g];
         if (!c->parts[group->first_part].program.surface) continue;
-        PUT(w, "    if (part >= %du && part < %du) {\n        float look[8];\n        masu_look_%d(p.x, p.y, p.z, ",
+        PUT(w,
+            "    if (part >= %du && part < %du) {\n        float look[8];\n        "
+            "masu_look_%d(p.x, p.y, p.z, ",
             group->first_part, group->first_part + group->part_count, g);
         put_slot_base(w, g);
         PUT(w, ", 0xFFFFFFFFu, look);\n"
@@ -476,8 +492,8 @@ static void put_surfaces(sdfc_writer *w) {
         "    s.roughness = masu_slot(at + 3u);\n"
         "    s.emissive = vec3(masu_slot(at + 4u), masu_slot(at + 5u), masu_slot(at + 6u));\n"
         "    s.metallic = masu_slot(at + 7u);\n",
-        MASU_SDFC_PART_SLOTS, (unsigned)(c->material_count > 0 ? c->material_count - 1 : 0), (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
-        MASU_SDFC_MATERIAL_SLOTS);
+        MASU_SDFC_PART_SLOTS, (unsigned)(c->material_count > 0 ? c->material_count - 1 : 0),
+        (unsigned)c->part_count * MASU_SDFC_PART_SLOTS, MASU_SDFC_MATERIAL_SLOTS);
     put_looks(w);
     PUT(w, "}\n\n"
            "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
@@ -493,18 +509,23 @@ void sdfc_put_glsl(sdfc_writer *w) {
         c->part_count - c->flat_parts);
     PUT(w, "#define MASU_SDF_MASKED %d /* 1: lists of parts are bits */\n",
         c->part_count <= MASU_SDFC_MASKED_MAX);
-    PUT(w, "#define MASU_SDF_BLOCK_WORDS %u /* of bits that say what matters in a block of pixels */\n",
+    PUT(w,
+        "#define MASU_SDF_BLOCK_WORDS %u /* of bits that say what matters in a block of pixels "
+        "*/\n",
         sdfc_block_words(c));
     for (int word = 0; word < MASU_SDFC_BLOCK_WORDS_MAX; word++) {
         PUT(w, "#define MASU_SDF_TERM_BITS_%d 0x%xu\n", word, sdfc_term_word(c, word));
     }
-    PUT(w, "#define MASU_SDF_ROUGH %d /* 1: it has detail of any size, or falls much slower than distances */\n",
+    PUT(w,
+        "#define MASU_SDF_ROUGH %d /* 1: it has detail of any size, or falls much slower than "
+        "distances */\n",
         sdfc_any_rough(c));
     PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
     PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", any_timed(c));
     if (any_looks(c)) {
-        PUT(w, "#define MASU_SDF_PAINTED 1 /* materials ask for masu_normal and a pixel's width */\n"
-               "float masu_footprint = 0.0;\n\n");
+        PUT(w,
+            "#define MASU_SDF_PAINTED 1 /* materials ask for masu_normal and a pixel's width */\n"
+            "float masu_footprint = 0.0;\n\n");
     }
     sdfc_put_users(w);
     PUT(w, "#include \"sdf/terms.glsl\"\n#define real float\n#define TO_INT(x) int(x)\n");

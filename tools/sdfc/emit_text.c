@@ -62,7 +62,9 @@ static bool *live_variables(sdfc *c, const sdfc_program *p) {
     for (int k = f->count; k-- > 0;) {
         const sdfc_instr *i = &f->instrs[k];
         bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
-        int count = calls ? SDFC_OPERANDS_MAX : i->op == SDFC_CALL_USER ? 3 : sdfc_ops[i->op].operands;
+        int count = calls                     ? SDFC_OPERANDS_MAX
+                    : i->op == SDFC_CALL_USER ? 3
+                                              : sdfc_ops[i->op].operands;
         for (int j = 0; j < count && live[3 + k]; j++) {
             if (i->operand[j] >= 0) live[i->operand[j]] = true;
         }
@@ -154,18 +156,22 @@ static void put_template(sdfc_writer *w, const sdfc_group *g, const sdfc_program
     }
 }
 
-static bool is_literal(const sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, int operand, double value) {
-    return operand < 0 && g->slot_of_arg[~operand] < 0 && w->c->exprs[p->args[~operand]].value == value;
+static bool is_literal(const sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                       int operand, double value) {
+    return operand < 0 && g->slot_of_arg[~operand] < 0 &&
+           w->c->exprs[p->args[~operand]].value == value;
 }
 
 /* x - 0 and x * 1 with a literal: a shape at the origin, of a form with other shapes elsewhere. */
 static bool does_nothing(const sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
                          const sdfc_instr *i) {
-    return (i->op == SDFC_sub || i->op == SDFC_mul) && is_literal(w, g, p, i->operand[1], i->op == SDFC_mul);
+    return (i->op == SDFC_sub || i->op == SDFC_mul) &&
+           is_literal(w, g, p, i->operand[1], i->op == SDFC_mul);
 }
 
 /* Most elements of a rotation about an axis, and of a plane across one, are zeros and ones. */
-static void put_dot(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i) {
+static void put_dot(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                    const sdfc_instr *i) {
     bool any = false;
     for (int k = 0; k < 3; k++) {
         if (is_literal(w, g, p, i->operand[3 + k], 0)) continue;
@@ -200,7 +206,8 @@ static void put_bound(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p
 
 /* The axes whose neighbour cells are farther than the value of the own cell. If the cells that are
  * not evaluated could matter in the ball, nothing is skipped. */
-static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i, int variable) {
+static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                      const sdfc_instr *i, int variable) {
     PUT(w, "        if (i == 0u) {\n");
     for (int k = 0; k < 3; k++) {
         unsigned bit = i->select[k] ? 1u << (i->select[k] - 1) : 0;
@@ -215,16 +222,19 @@ static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p
 static unsigned bits_of(const sdfc_program *p, int function) {
     const sdfc_function *f = &p->functions[function];
     unsigned bits = 0;
-    for (int t = 0; t < f->term_count; t++) bits |= f->terms[t].bit >= 0 ? 1u << f->terms[t].bit : 0;
+    for (int t = 0; t < f->term_count; t++)
+        bits |= f->terms[t].bit >= 0 ? 1u << f->terms[t].bit : 0;
     for (int k = 0; k < f->count; k++) {
-        if (f->instrs[k].op == SDFC_CALL_MIN && f->instrs[k].aux > function) bits |= bits_of(p, f->instrs[k].aux);
+        if (f->instrs[k].op == SDFC_CALL_MIN && f->instrs[k].aux > function)
+            bits |= bits_of(p, f->instrs[k].aux);
     }
     return bits;
 }
 
 /* The cells that a function is called in: those around, then its own by how far its coordinates
  * are folded. */
-static void put_inputs(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i) {
+static void put_inputs(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                       const sdfc_instr *i) {
     for (int k = 0; k < i->around; k++) {
         PUT(w, ", ");
         sdfc_put_operand(w, g, p, i->operand[24 + k]);
@@ -260,9 +270,15 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
     if (nearest) PUT(w, "    {\n    real least = 1e30;\n");
     if (skips) PUT(w, "    {\n");
     if (skips)
-        PUT(w, "    uint skip = 0u;\n    uint i = 0u;\n    MASU_LOOP for (uint n = 0u; n < %du; n++) {\n        if (i >= %du) {\n            break;\n        }\n", i->points, i->points);
+        PUT(w,
+            "    uint skip = 0u;\n    uint i = 0u;\n    MASU_LOOP for (uint n = 0u; n < %du; n++) "
+            "{\n        if (i >= %du) {\n            break;\n        }\n",
+            i->points, i->points);
     else
-        PUT(w, w->glsl ? "    MASU_LOOP for (uint i = 0u; i < %du; i++) {\n" : "    for (int i = 0; i < %d; i++) {\n", i->points);
+        PUT(w,
+            w->glsl ? "    MASU_LOOP for (uint i = 0u; i < %du; i++) {\n"
+                    : "    for (int i = 0; i < %d; i++) {\n",
+            i->points);
     for (int k = 0; k < 3; k++) {
         PUT(w, "        real p%d = ", k);
         for (int cell = (1 << i->bits[k]) - 1; cell > 0; cell--) {
@@ -279,13 +295,15 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
         PUT(w, ";\n");
     }
     if (nearest)
-        PUT(w, "        real d = masu_shape_%d_%d(p0, p1, p2, base%s", group, i->aux, w->glsl ? ", on" : "");
-    else
-        PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base%s", variable, variable, group, i->aux,
+        PUT(w, "        real d = masu_shape_%d_%d(p0, p1, p2, base%s", group, i->aux,
             w->glsl ? ", on" : "");
+    else
+        PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base%s", variable, variable,
+            group, i->aux, w->glsl ? ", on" : "");
     put_inputs(w, g, p, i);
     if (nearest)
-        PUT(w, ");\n        v%d = d < least ? real(i) : v%d;\n        least = min(least, d);\n", variable, variable);
+        PUT(w, ");\n        v%d = d < least ? real(i) : v%d;\n        least = min(least, d);\n",
+            variable, variable);
     else
         PUT(w, "));\n");
     if (skips) {
@@ -346,7 +364,8 @@ static bool is_open(const sdfc_term *t) { return t->bit >= 0 || t->cap; }
 
 static bool is_declared(const sdfc_function *f, int t) {
     for (int k = f->term_count; k-- > t + 1;) {
-        if (is_open(&f->terms[k]) && f->terms[k].last == f->terms[t].last && f->terms[k].first <= f->terms[t].first) {
+        if (is_open(&f->terms[k]) && f->terms[k].last == f->terms[t].last &&
+            f->terms[k].first <= f->terms[t].first) {
             return true;
         }
     }
@@ -354,7 +373,8 @@ static bool is_declared(const sdfc_function *f, int t) {
 }
 
 /* Without the term, its join keeps its previous value, or nothing. Outer terms open first. */
-static void open_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_function *f, int k) {
+static void open_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                       const sdfc_function *f, int k) {
     for (int t = f->term_count; t-- > 0;) {
         const sdfc_term *term = &f->terms[t];
         if (term->first != k || !is_open(term)) continue;
@@ -375,7 +395,8 @@ static void open_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *
     }
 }
 
-static void close_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_function *f, int k) {
+static void close_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                        const sdfc_function *f, int k) {
     for (int t = 0; t < f->term_count; t++) {
         const sdfc_term *term = &f->terms[t];
         if (term->last != k || !is_open(term)) continue;
@@ -414,9 +435,11 @@ static void put_function(sdfc_writer *w, int group, const sdfc_program *p, int f
     const sdfc_function *f = &p->functions[function];
     const sdfc_group *g = &w->c->groups[group];
     bool terms = w->glsl, surface = p->surface && function == p->surface, root = function == 0;
-    PUT(w, surface ? "%svoid masu_look_%d" : "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
+    PUT(w, surface ? "%svoid masu_look_%d" : "%sreal masu_shape_%d", w->glsl ? "" : "static ",
+        group);
     if (!root && !surface) PUT(w, "_%d", function);
-    PUT(w, w->glsl ? "(real x, real y, real z, uint base, uint on" : "(real x, real y, real z, uint base");
+    PUT(w, w->glsl ? "(real x, real y, real z, uint base, uint on"
+                   : "(real x, real y, real z, uint base");
     for (int k = 0; k < f->inputs; k++) PUT(w, ", real v%d", 3 + k);
     PUT(w, !surface ? ")\n{\n" : w->glsl ? ", out real look[8])\n{\n" : ", real look[8])\n{\n");
     if (!w->glsl) PUT(w, "    (void)x;\n    (void)y;\n    (void)z;\n    (void)base;\n");

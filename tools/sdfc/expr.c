@@ -61,17 +61,18 @@ int sdfc_anchor_expr(sdfc *c, int axis) {
 }
 
 int sdfc_leaf(sdfc *c, int op, int a, int b, double low, double high) {
-    return add_expr(c, (sdfc_expr){.op = op,
-                                   .a = {a, b, 0},
-                                   .local = true,
-                                   .cellular = op == SDFC_CELL && a < 0,
-                                   .trapped = op == SDFC_TRAP,
-                                   .slope = op == SDFC_POINT || op == SDFC_WORLD    ? 1
-                                            : op == SDFC_FOOTPRINT || op == SDFC_CELL ? 0
-                                                                                      : SDFC_INFINITY,
-                                   .value = op == SDFC_CELL ? 0.5 : 0,
-                                   .low = low,
-                                   .high = high});
+    return add_expr(c,
+                    (sdfc_expr){.op = op,
+                                .a = {a, b, 0},
+                                .local = true,
+                                .cellular = op == SDFC_CELL && a < 0,
+                                .trapped = op == SDFC_TRAP,
+                                .slope = op == SDFC_POINT || op == SDFC_WORLD      ? 1
+                                         : op == SDFC_FOOTPRINT || op == SDFC_CELL ? 0
+                                                                                   : SDFC_INFINITY,
+                                .value = op == SDFC_CELL ? 0.5 : 0,
+                                .low = low,
+                                .high = high});
 }
 
 /* ---- intervals ---- */
@@ -147,7 +148,13 @@ static interval range(const sdfc *c, int op, const int *a) {
     case SDFC_sqrt: return (interval){sqrt(fmax(x.low, 0)), sqrt(fmax(x.high, 0))};
     case SDFC_floor: return (interval){floor(x.low), floor(x.high)};
     case SDFC_fract: return (interval){0, 1};
-    case SDFC_sign: return (interval){x.low > 0 ? 1 : x.low == 0 ? 0 : -1, x.high < 0 ? -1 : x.high == 0 ? 0 : 1};
+    case SDFC_sign:
+        return (interval){x.low > 0    ? 1
+                          : x.low == 0 ? 0
+                                       : -1,
+                          x.high < 0    ? -1
+                          : x.high == 0 ? 0
+                                        : 1};
     case SDFC_step: return (interval){y.low >= x.high ? 1 : 0, y.high < x.low ? 0 : 1};
     case SDFC_less: return (interval){x.high < y.low ? 1 : 0, x.low >= y.high ? 0 : 1};
     case SDFC_select:
@@ -159,7 +166,8 @@ static interval range(const sdfc *c, int op, const int *a) {
         return (interval){x.low * x.low * (3 - 2 * x.low), x.high * x.high * (3 - 2 * x.high)};
     case SDFC_atan2:
         if (y.low > 0) {
-            return (interval){atan2(x.low, x.low > 0 ? y.high : y.low), atan2(x.high, x.high > 0 ? y.low : y.high)};
+            return (interval){atan2(x.low, x.low > 0 ? y.high : y.low),
+                              atan2(x.high, x.high > 0 ? y.low : y.high)};
         }
         return (interval){-PI, PI};
     case SDFC_log2: return (interval){log2(fmax(x.low, 1e-30)), log2(fmax(x.high, 1e-30))};
@@ -214,7 +222,8 @@ static double slope_of(const sdfc *c, int op, const int *a) {
         double by_x = fmax(fabs(x->low), fabs(x->high)), by_y = fmax(fabs(y->low), fabs(y->high));
         return times(x->slope, by_y) + times(y->slope, by_x);
     }
-    case SDFC_noise: return SDFC_NOISE_SLOPE * hypot(hypot(x->slope, y->slope), c->exprs[a[2]].slope);
+    case SDFC_noise:
+        return SDFC_NOISE_SLOPE * hypot(hypot(x->slope, y->slope), c->exprs[a[2]].slope);
     default: return SDFC_INFINITY;
     }
 }
@@ -223,7 +232,8 @@ int sdfc_footprint(sdfc *c, int e) {
     const sdfc_expr *x = &c->exprs[e];
     if (!x->local || !isfinite(x->slope) || x->slope == 0) return sdfc_number(c, 0);
     int slope = sdfc_number(c, x->slope);
-    return sdfc_apply(c, SDFC_mul, sdfc_leaf(c, SDFC_FOOTPRINT, 0, 0, 0, SDFC_INFINITY), slope, slope);
+    return sdfc_apply(c, SDFC_mul, sdfc_leaf(c, SDFC_FOOTPRINT, 0, 0, 0, SDFC_INFINITY), slope,
+                      slope);
 }
 
 int sdfc_fade(sdfc *c, const int e[3]) {
@@ -239,7 +249,8 @@ int sdfc_fade(sdfc *c, const int e[3]) {
 int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
     int a[3] = {x, y, z};
     int count = sdfc_ops[op].operands;
-    bool constant = true, timed = false, anchored = false, local = false, cellular = false, trapped = false;
+    bool constant = true, timed = false, anchored = false, local = false, cellular = false,
+         trapped = false;
     double values[3] = {0};
     for (int i = 0; i < count; i++) {
         values[i] = c->exprs[a[i]].value;

@@ -10,7 +10,8 @@ static sdfc_value scalar(int e) { return (sdfc_value){1, {e, e, e}}; }
 
 static int wider(sdfc *c, int token, sdfc_value x, sdfc_value y) {
     if (x.count != y.count && x.count != 1 && y.count != 1) {
-        sdfc_fail(c, token, "expected as many numbers on both sides, found %d and %d", x.count, y.count);
+        sdfc_fail(c, token, "expected as many numbers on both sides, found %d and %d", x.count,
+                  y.count);
     }
     return x.count > y.count ? x.count : y.count;
 }
@@ -181,7 +182,8 @@ static sdfc_value call_fbm(sdfc *c, int token, const sdfc_value *a) {
     double octaves = c->exprs[a[1].e[0]].value, gain = 1, factor = 1;
     int sum = number(c, 0);
     for (int i = 1; i < 4; i++) {
-        if (a[i].count != 1 || !sdfc_constant(c, a[i].e[0])) sdfc_fail(c, token, "fbm: expected constants behind the point");
+        if (a[i].count != 1 || !sdfc_constant(c, a[i].e[0]))
+            sdfc_fail(c, token, "fbm: expected constants behind the point");
     }
     if (!(octaves >= 1 && octaves <= 12 && octaves == floor(octaves))) {
         sdfc_fail(c, token, "fbm: expected 1 to 12 octaves, found %g", octaves);
@@ -202,7 +204,8 @@ static sdfc_value call_checker(sdfc *c, sdfc_value v) {
         int wave = sdfc_apply(c, SDFC_square_wave, v.e[i], sdfc_footprint(c, v.e[i]), 0);
         product = sdfc_apply(c, SDFC_mul, product, wave, 0);
     }
-    return scalar(sdfc_apply(c, SDFC_sub, number(c, 0.5), sdfc_apply(c, SDFC_mul, product, number(c, 0.5), 0), 0));
+    return scalar(sdfc_apply(c, SDFC_sub, number(c, 0.5),
+                             sdfc_apply(c, SDFC_mul, product, number(c, 0.5), 0), 0));
 }
 
 static sdfc_value apply(sdfc *c, int name, int f, const sdfc_value *a, int count) {
@@ -211,7 +214,8 @@ static sdfc_value apply(sdfc *c, int name, int f, const sdfc_value *a, int count
     case DEG: return each(c, name, SDFC_mul, a[0], scalar(number(c, PI / 180)));
     case TAN: {
         sdfc_value cosine = each(c, name, SDFC_cos, a[0], a[0]);
-        return each(c, name, SDFC_mul, each(c, name, SDFC_sin, a[0], a[0]), each(c, name, SDFC_rcp, cosine, cosine));
+        return each(c, name, SDFC_mul, each(c, name, SDFC_sin, a[0], a[0]),
+                    each(c, name, SDFC_rcp, cosine, cosine));
     }
     case EXP: return each(c, name, SDFC_pow, scalar(number(c, 2.71828182845904523536)), a[0]);
     case LOG: {
@@ -220,9 +224,11 @@ static sdfc_value apply(sdfc *c, int name, int f, const sdfc_value *a, int count
     }
     case ATAN: return each(c, name, SDFC_atan2, a[0], count == 2 ? a[1] : scalar(number(c, 1)));
     case SMOOTHSTEP: {
-        sdfc_value from = each(c, name, SDFC_sub, a[2], a[0]), whole = each(c, name, SDFC_sub, a[1], a[0]);
+        sdfc_value from = each(c, name, SDFC_sub, a[2], a[0]),
+                   whole = each(c, name, SDFC_sub, a[1], a[0]);
         sdfc_value t = each(c, name, SDFC_mul, from, each(c, name, SDFC_rcp, whole, whole));
-        t = each(c, name, SDFC_min, each(c, name, SDFC_max, t, scalar(number(c, 0))), scalar(number(c, 1)));
+        t = each(c, name, SDFC_min, each(c, name, SDFC_max, t, scalar(number(c, 0))),
+                 scalar(number(c, 1)));
         return each(c, name, SDFC_ease, t, t);
     }
     case DOT: return dot(c, name, a[0], a[1]);
@@ -231,7 +237,9 @@ static sdfc_value apply(sdfc *c, int name, int f, const sdfc_value *a, int count
     case FBM: return call_fbm(c, name, a);
     case CHECKER: return call_checker(c, a[0]);
     case STRIPES: return call_checker(c, scalar(one(c, name, a[0])));
-    default: return each3(c, name, functions[f].op, a[0], count > 1 ? a[1] : a[0], count > 2 ? a[2] : a[0]);
+    default:
+        return each3(c, name, functions[f].op, a[0], count > 1 ? a[1] : a[0],
+                     count > 2 ? a[2] : a[0]);
     }
 }
 
@@ -245,7 +253,8 @@ static sdfc_value call(sdfc *c, int name) {
     }
     int f = 0, count = 0;
     while (f < FUNCTIONS && !sdfc_token_is(c, name, functions[f].name)) f++;
-    if (f == FUNCTIONS || functions[f].op == CONSTANT) sdfc_unknown(c, name, SDFC_NAMES_NUMBERS, "a function");
+    if (f == FUNCTIONS || functions[f].op == CONSTANT)
+        sdfc_unknown(c, name, SDFC_NAMES_NUMBERS, "a function");
     int kind = c->open_kind;
     c->open_kind = -1;
     if (functions[f].op == HASH) {
@@ -262,7 +271,8 @@ static sdfc_value call(sdfc *c, int name) {
         a[count++] = sdfc_parse_expression(c);
     } while (sdfc_mark(c, ','));
     if (count < functions[f].least) {
-        sdfc_fail(c, c->at, "%s: expected %d arguments, found %d", functions[f].name, functions[f].least, count);
+        sdfc_fail(c, c->at, "%s: expected %d arguments, found %d", functions[f].name,
+                  functions[f].least, count);
     }
     sdfc_need_mark(c, ')');
     c->open_kind = kind;
@@ -405,7 +415,8 @@ static sdfc_value compared(sdfc *c) {
     if (!less && !more) return v;
     bool equal = sdfc_mark(c, '=');
     sdfc_value w = sum(c);
-    sdfc_value r = less != equal ? each(c, token, SDFC_less, v, w) : each(c, token, SDFC_less, w, v);
+    sdfc_value r =
+        less != equal ? each(c, token, SDFC_less, v, w) : each(c, token, SDFC_less, w, v);
     return equal ? each(c, token, SDFC_sub, scalar(number(c, 1)), r) : r;
 }
 

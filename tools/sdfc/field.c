@@ -66,12 +66,14 @@ const masu_sdfc_part *masu_sdfc_field_parts(const masu_sdfc_field *f, uint32_t *
 
 size_t masu_sdfc_field_room(const masu_sdfc_field *f) { return f->room; }
 
-double masu_sdfc_field_run(const masu_sdfc_field *f, uint32_t part, const double p[3], double *room) {
+double masu_sdfc_field_run(const masu_sdfc_field *f, uint32_t part, const double p[3],
+                           double *room) {
     return sdfc_run_in(f->c, &f->c->parts[part].program, p, room);
 }
 
-void masu_sdfc_field_material(const masu_sdfc_field *f, uint32_t part, const double p[3], const double n[3],
-                              double width, double *room, double out[MASU_SDFC_MATERIAL_SLOTS]) {
+void masu_sdfc_field_material(const masu_sdfc_field *f, uint32_t part, const double p[3],
+                              const double n[3], double width, double *room,
+                              double out[MASU_SDFC_MATERIAL_SLOTS]) {
     const sdfc_place_of at = {{n[0], n[1], n[2]}, width};
     sdfc_run_look(f->c, &f->c->parts[part], p, &at, room, out);
 }

@@ -157,7 +157,9 @@ typedef struct sdfc_kind {
     const char *name, *pattern, *arguments, *meaning, *lipschitz, *distance;
 } sdfc_kind;
 extern const sdfc_kind sdfc_kinds[SDFC_KIND_COUNT];
-static inline bool sdfc_is_join(int kind) { return kind >= SDFC_KIND_UNION && kind <= SDFC_KIND_BLEND; }
+static inline bool sdfc_is_join(int kind) {
+    return kind >= SDFC_KIND_UNION && kind <= SDFC_KIND_BLEND;
+}
 
 /* ---- compiled parts ---- */
 
@@ -175,7 +177,7 @@ typedef struct sdfc_instr {
                                            values per metre of the world; 18..20: the coordinates
                                            before the fold; 21..23: 1 / period or 0; 24..26: cells
                                            around it */
-    int16_t named, around;              /* CALL_MIN: whether the function takes its own cell (1: of 18
+    int16_t named, around; /* CALL_MIN: whether the function takes its own cell (1: of 18
                                            to 23; 2: sector 18, of the odd points 19), and of how many
                                            around it */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
@@ -485,8 +487,8 @@ typedef struct sdfc_place_of {
     double normal[3], footprint;
 } sdfc_place_of;
 /* Albedo, roughness, emissive, metallic of a part there. */
-void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], const sdfc_place_of *at, double *room,
-                   double out[8]);
+void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3],
+                   const sdfc_place_of *at, double *room, double out[8]);
 void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out);
 
 #endif

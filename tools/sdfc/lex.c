@@ -179,12 +179,14 @@ static void path_beside(const char *from, const char *name, int length, char out
 static void read_include(sdfc *c, cursor *k, int file, int depth) {
     uint32_t column = k->at - k->line_start + 1;
     skip_blanks(c, k);
-    if (byte_at(c, k->at) != '"') fail_at(c, k->line, k->at - k->line_start + 1, k->at, "expected a file's name in quotes");
+    if (byte_at(c, k->at) != '"')
+        fail_at(c, k->line, k->at - k->line_start + 1, k->at, "expected a file's name in quotes");
     uint32_t from = ++k->at, start = from;
     while (byte_at(c, k->at) >= 0x20 && byte_at(c, k->at) != '"') k->at++;
     uint32_t length = k->at - from;
     if (byte_at(c, k->at) != '"' || !length || length > 120) {
-        fail_at(c, k->line, start - k->line_start, start - 1, "expected a file's name of at most 120 bytes in quotes");
+        fail_at(c, k->line, start - k->line_start, start - 1,
+                "expected a file's name of at most 120 bytes in quotes");
     }
     k->at++;
     skip_blanks(c, k);
@@ -196,12 +198,14 @@ static void read_include(sdfc *c, cursor *k, int file, int depth) {
     }
     uint8_t *bytes = NULL;
     size_t count = 0;
-    if (depth >= 8) fail_at(c, k->line, column, from, "expected at most 8 files that include each other");
+    if (depth >= 8)
+        fail_at(c, k->line, column, from, "expected at most 8 files that include each other");
     if (!masu_file_read(name, MASU_SDFC_SOURCE_MAX, &bytes, &count, error, sizeof error)) {
         snprintf(message, sizeof message, "include: %s", error);
         fail_at(c, k->line, start - k->line_start, start - 1, message);
     }
-    char *joined = c->bytes + count + 1 > 4 * MASU_SDFC_SOURCE_MAX ? NULL : malloc(c->bytes + count + 2);
+    char *joined =
+        c->bytes + count + 1 > 4 * MASU_SDFC_SOURCE_MAX ? NULL : malloc(c->bytes + count + 2);
     if (!joined) {
         free(bytes);
         fail_at(c, k->line, column, from, "expected files of at most 4 MiB in all");
@@ -214,7 +218,8 @@ static void read_include(sdfc *c, cursor *k, int file, int depth) {
     c->text = c->joined = joined;
     uint32_t begin = (uint32_t)c->bytes + 1, end = c->file_end;
     c->bytes += count + 1;
-    c->files = sdfc_grow(c, c->files, c->file_count, &c->file_capacity, sizeof *c->files, 64, "files");
+    c->files =
+        sdfc_grow(c, c->files, c->file_count, &c->file_capacity, sizeof *c->files, 64, "files");
     c->files[c->file_count].begin = begin;
     memcpy(c->files[c->file_count++].name, name, sizeof name);
     c->file_end = (uint32_t)c->bytes;

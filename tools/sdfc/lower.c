@@ -29,7 +29,9 @@ int sdfc_argument(sdfc_lowering *l, int expr) {
     return ~p->arg_count++;
 }
 
-int sdfc_literal(sdfc_lowering *l, double value) { return sdfc_argument(l, sdfc_number(l->c, value)); }
+int sdfc_literal(sdfc_lowering *l, double value) {
+    return sdfc_argument(l, sdfc_number(l->c, value));
+}
 
 sdfc_instr *sdfc_add_instr(sdfc_lowering *l, int op) {
     if (++l->c->instrs > SDFC_INSTRS_MAX) {
@@ -44,7 +46,9 @@ sdfc_instr *sdfc_add_instr(sdfc_lowering *l, int op) {
     return i;
 }
 
-int sdfc_last_variable(const sdfc_lowering *l) { return 2 + l->program->functions[l->function].count; }
+int sdfc_last_variable(const sdfc_lowering *l) {
+    return 2 + l->program->functions[l->function].count;
+}
 
 int sdfc_op_n(sdfc_lowering *l, int op, int count, const int *operands) {
     sdfc_instr *i = sdfc_add_instr(l, op);
@@ -91,11 +95,13 @@ static sdfc_point moved_offset(sdfc_lowering *l, sdfc_point p, const int by[3]) 
     return p;
 }
 
-static void turn_offset(sdfc_lowering *l, const sdfc_shape *s, const sdfc_point *from, sdfc_point *to) {
+static void turn_offset(sdfc_lowering *l, const sdfc_shape *s, const sdfc_point *from,
+                        sdfc_point *to) {
     for (int i = 0; i < 3; i++) {
         int sum = sdfc_number(l->c, 0);
         for (int j = 0; j < 3; j++) {
-            int part = sdfc_apply(l->c, SDFC_mul, s->number[3 * i + j], sdfc_offset_of(l, from, j), 0);
+            int part =
+                sdfc_apply(l->c, SDFC_mul, s->number[3 * i + j], sdfc_offset_of(l, from, j), 0);
             sum = sdfc_apply(l->c, SDFC_add, sum, part, 0);
         }
         to->offset[i] = sum + 1;
@@ -178,7 +184,9 @@ int sdfc_child_function(sdfc_lowering *l, int shape, bool join_box, const sdfc_s
     memcpy(seed, l->seed, sizeof seed);
     if (owner->cell) {
         if (l->cells == SDFC_CELLS_DEEP) {
-            sdfc_fail(l->c, owner->token, "expected at most %d repetitions with names inside each other", SDFC_CELLS_DEEP);
+            sdfc_fail(l->c, owner->token,
+                      "expected at most %d repetitions with names inside each other",
+                      SDFC_CELLS_DEEP);
         }
         l->sector[l->cells] = owner->kind == SDFC_KIND_POLAR;
         l->cell[l->cells++] = owner->cell - 1;
@@ -222,13 +230,16 @@ int sdfc_capped(sdfc_lowering *l, int d, int least, const sdfc_facts *f, sdfc_po
         axis = i;
     }
     if (ends == 1) { /* rows without end: a slab */
-        int from = OP(l, sub, at[axis], sdfc_relative(l, &p, axis, (f->box.low[axis] + f->box.high[axis]) / 2));
-        int outside = OP(l, sub, OP(l, abs, from), sdfc_literal(l, (f->box.high[axis] - f->box.low[axis]) / 2));
+        int from = OP(l, sub, at[axis],
+                      sdfc_relative(l, &p, axis, (f->box.low[axis] + f->box.high[axis]) / 2));
+        int outside = OP(l, sub, OP(l, abs, from),
+                         sdfc_literal(l, (f->box.high[axis] - f->box.low[axis]) / 2));
         least = OP(l, max, least, OP(l, mul, outside, sdfc_literal(l, f->lipschitz)));
     } else if (ends) {
         for (int i = 0; i < 3; i++) {
             bool end = isfinite(f->box.low[i]) && isfinite(f->box.high[i]);
-            e[i] = end ? sdfc_relative(l, &p, i, (f->box.low[i] + f->box.high[i]) / 2) : sdfc_literal(l, 0);
+            e[i] = end ? sdfc_relative(l, &p, i, (f->box.low[i] + f->box.high[i]) / 2)
+                       : sdfc_literal(l, 0);
             e[3 + i] = sdfc_literal(l, end ? (f->box.high[i] - f->box.low[i]) / 2 : 1e30);
         }
         int outside = OP(l, around_box, p.x, p.y, p.z, e[0], e[1], e[2], e[3], e[4], e[5]);
@@ -237,9 +248,10 @@ int sdfc_capped(sdfc_lowering *l, int d, int least, const sdfc_facts *f, sdfc_po
     int result = OP(l, min, d, least);
     if (cap < 0) {
         sdfc_function *f2 = &l->program->functions[l->function];
-        f2->terms = sdfc_grow(l->c, f2->terms, f2->term_count, &f2->term_capacity, sizeof *f2->terms,
-                              INSTRS_MAX, "terms of a part");
-        f2->terms[f2->term_count++] = (sdfc_term){.first = first, .last = f2->count - 1, .bit = -1, .cap = cap};
+        f2->terms = sdfc_grow(l->c, f2->terms, f2->term_count, &f2->term_capacity,
+                              sizeof *f2->terms, INSTRS_MAX, "terms of a part");
+        f2->terms[f2->term_count++] =
+            (sdfc_term){.first = first, .last = f2->count - 1, .bit = -1, .cap = cap};
     }
     return result;
 }
@@ -292,8 +304,10 @@ int sdfc_lower_whole(sdfc_lowering *l, int shape, sdfc_point p) {
 }
 
 bool sdfc_has_terms(const sdfc_lowering *l, const sdfc_shape *s) {
-    if (!(l->stretch > 0) || s->children < 2 || s->facts.estimate || s->kind == SDFC_KIND_XOR) return false;
-    bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION || s->kind >= SDFC_KIND_CHAMFER;
+    if (!(l->stretch > 0) || s->children < 2 || s->facts.estimate || s->kind == SDFC_KIND_XOR)
+        return false;
+    bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION ||
+                    s->kind >= SDFC_KIND_CHAMFER;
     if (l->in_cells && !is_union) return false;
     if (!l->folded) return true;
     for (int i = 0; i < s->children; i++) {
@@ -306,8 +320,8 @@ void sdfc_add_term(sdfc_lowering *l, const sdfc_shape *s, int child, int first, 
     sdfc_function *f = &l->program->functions[l->function];
     double lipschitz = s->extra[0] != 0 ? 1 : s->facts.lipschitz;
     if (f->count == first) return;
-    f->terms = sdfc_grow(l->c, f->terms, f->term_count, &f->term_capacity, sizeof *f->terms, INSTRS_MAX,
-                         "terms of a part");
+    f->terms = sdfc_grow(l->c, f->terms, f->term_count, &f->term_capacity, sizeof *f->terms,
+                         INSTRS_MAX, "terms of a part");
     f->terms[f->term_count++] =
         (sdfc_term){.first = first,
                     .last = f->count - 1,
@@ -315,7 +329,8 @@ void sdfc_add_term(sdfc_lowering *l, const sdfc_shape *s, int child, int first, 
                     .smooth = smooth,
                     .opens = child == 0,
                     .far = s->kind == SDFC_KIND_BLEND,
-                    .most = s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_SMOOTH_UNION && s->kind < SDFC_KIND_CHAMFER,
+                    .most = s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_SMOOTH_UNION &&
+                            s->kind < SDFC_KIND_CHAMFER,
                     .lipschitz = lipschitz * l->stretch};
 }
 
@@ -349,7 +364,8 @@ static int lower_twist(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     sdfc_point q = {OP(l, turn_x, p.x, p.z, a), p.y, OP(l, turn_z, p.x, p.z, a), {0}};
     int d = sdfc_lower_whole(l, s->child[0], q);
     int radius = sdfc_literal(l, s->extra[2]), middle = sdfc_literal(l, s->extra[3]);
-    int outside = OP(l, around_cylinder, p.x, p.y, p.z, radius, middle, sdfc_literal(l, s->extra[4]));
+    int outside =
+        OP(l, around_cylinder, p.x, p.y, p.z, radius, middle, sdfc_literal(l, s->extra[4]));
     int shell = OP(l, mul, outside, sdfc_literal(l, s->extra[0]));
     return OP(l, max, shell, OP(l, min, d, sdfc_literal(l, s->extra[1])));
 }
@@ -469,7 +485,8 @@ static int lower_displace(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
 
 static int lower_displace_noise(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     const int *n = s->number;
-    int d = sdfc_lower_shape(l, s->child[0], p), a = sdfc_argument(l, n[0]), k = sdfc_argument(l, n[1]);
+    int d = sdfc_lower_shape(l, s->child[0], p), a = sdfc_argument(l, n[0]),
+        k = sdfc_argument(l, n[1]);
     p = sdfc_settled(l, p);
     int x = OP(l, mul, p.x, k), y = OP(l, mul, p.y, k);
     int w = OP(l, noise, x, y, OP(l, mul, p.z, k));
@@ -485,12 +502,14 @@ int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p) {
     l->root = root && (s->kind == SDFC_KIND_TRANSLATE || s->kind == SDFC_KIND_ROTATE ||
                        s->kind == SDFC_KIND_ROTATE_EULER || s->kind == SDFC_KIND_SCALE ||
                        s->kind == SDFC_KIND_PAINT);
-    if (root && (!l->root || !hands_offset_on(l->c, s)) && !l->surface) gather_root(l, &p, !l->root);
+    if (root && (!l->root || !hands_offset_on(l->c, s)) && !l->surface)
+        gather_root(l, &p, !l->root);
     if (!hands_offset_on(l->c, s)) p = sdfc_settled(l, p);
     if (root && !l->root && l->surface) l->own = sdfc_settled(l, p);
     l->look = (sdfc_look){0};
     if (l->shallow && !l->root) return sdfc_literal(l, 0);
-    bool fractal = s->kind == SDFC_KIND_MANDELBULB || (s->kind >= SDFC_KIND_APOLLONIAN && s->kind <= SDFC_KIND_JULIA);
+    bool fractal = s->kind == SDFC_KIND_MANDELBULB ||
+                   (s->kind >= SDFC_KIND_APOLLONIAN && s->kind <= SDFC_KIND_JULIA);
     if (fractal && l->surface) {
         l->fractal = shape;
         l->fractal_at = p;
@@ -505,7 +524,8 @@ int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p) {
             if (root && !l->surface) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);
             return sdfc_lower_ground(l, n, l->c->shapes[first].number[0], p);
         }
-        int x = OP(l, sub, p.x, sdfc_argument(l, n[0])), y = OP(l, sub, p.y, sdfc_argument(l, n[1]));
+        int x = OP(l, sub, p.x, sdfc_argument(l, n[0])),
+            y = OP(l, sub, p.y, sdfc_argument(l, n[1]));
         int z = OP(l, sub, p.z, sdfc_argument(l, n[2]));
         if (root && !l->surface) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);
         return sdfc_lower_shape(l, first, (sdfc_point){x, y, z, {0}});
@@ -527,7 +547,8 @@ int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p) {
     case SDFC_KIND_ELONGATE: {
         int x = OP(l, elongate, p.x, sdfc_argument(l, n[0]));
         int y = OP(l, elongate, p.y, sdfc_argument(l, n[1]));
-        return sdfc_lower_shape(l, first, (sdfc_point){x, y, OP(l, elongate, p.z, sdfc_argument(l, n[2])), {0}});
+        return sdfc_lower_shape(
+            l, first, (sdfc_point){x, y, OP(l, elongate, p.z, sdfc_argument(l, n[2])), {0}});
     }
     case SDFC_KIND_ONION: {
         int d = sdfc_lower_shape(l, first, p);
@@ -549,7 +570,8 @@ int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p) {
 }
 
 void sdfc_lower(sdfc *c, sdfc_part *part) {
-    sdfc_lowering l = {.c = c, .program = &part->program, .root = true, .stretch = 1, .scale = 1, .fractal = -1};
+    sdfc_lowering l = {
+        .c = c, .program = &part->program, .root = true, .stretch = 1, .scale = 1, .fractal = -1};
     c->at = part->token;
     sdfc_open_function(&l);
     int root = l.function;

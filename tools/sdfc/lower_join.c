@@ -16,16 +16,18 @@ static int join(sdfc_lowering *l, const sdfc_shape *s, int d, int e, int k, int 
     }
 }
 
-static sdfc_look joined_look(sdfc_lowering *l, const sdfc_shape *s, int d, int e, int k, int inverse, sdfc_look a,
-                             sdfc_look b) {
+static sdfc_look joined_look(sdfc_lowering *l, const sdfc_shape *s, int d, int e, int k,
+                             int inverse, sdfc_look a, sdfc_look b) {
     bool cut = s->kind == SDFC_KIND_DIFFERENCE || s->kind == SDFC_KIND_SMOOTH_DIFFERENCE;
     if (cut && !b.painted) return a; /* a cut shows the material of the cut shape */
     if (!a.painted && !b.painted) return a;
     switch (s->kind) {
     case SDFC_KIND_INTERSECTION: return sdfc_mixed_look(l, a, b, OP(l, less, d, e), true);
     case SDFC_KIND_DIFFERENCE: return sdfc_mixed_look(l, a, b, OP(l, less, d, OP(l, neg, e)), true);
-    case SDFC_KIND_SMOOTH_UNION: return sdfc_mixed_look(l, a, b, OP(l, share_min, d, e, k, inverse), false);
-    case SDFC_KIND_SMOOTH_INTERSECTION: return sdfc_mixed_look(l, a, b, OP(l, share_max, d, e, k, inverse), false);
+    case SDFC_KIND_SMOOTH_UNION:
+        return sdfc_mixed_look(l, a, b, OP(l, share_min, d, e, k, inverse), false);
+    case SDFC_KIND_SMOOTH_INTERSECTION:
+        return sdfc_mixed_look(l, a, b, OP(l, share_max, d, e, k, inverse), false);
     case SDFC_KIND_SMOOTH_DIFFERENCE:
         return sdfc_mixed_look(l, a, b, OP(l, share_max, d, OP(l, neg, e), k, inverse), false);
     case SDFC_KIND_XOR: return sdfc_mixed_look(l, a, b, OP(l, share_xor, d, e), true);

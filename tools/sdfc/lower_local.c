@@ -18,24 +18,33 @@ typedef struct memo {
 static int cell_number(sdfc_lowering *l, int cell, bool sector) {
     for (int i = l->cells; i-- > 0;) {
         if (cell >= 0 && l->cell[i] != cell) continue;
-        if (sector && !l->sector[i]) sdfc_fail(l->c, l->c->at, "cell.index: expected polar(count as name, ...) around what this material is of, found repeat");
+        if (sector && !l->sector[i])
+            sdfc_fail(l->c, l->c->at,
+                      "cell.index: expected polar(count as name, ...) around what this material is "
+                      "of, found repeat");
         return l->seed[i];
     }
     if (l->c->any_cell) return sdfc_literal(l, sector ? 0 : 7);
-    sdfc_fail(l->c, l->c->at, "cell: expected a repetition with a name around what this material is of: repeat(periods as name, ...)");
+    sdfc_fail(l->c, l->c->at,
+              "cell: expected a repetition with a name around what this material is of: "
+              "repeat(periods as name, ...)");
 }
 
 static int trap(sdfc_lowering *l, int which) {
-    if (l->fractal < 0) sdfc_fail(l->c, l->c->at, "trap: expected a fractal in what this material is of");
+    if (l->fractal < 0)
+        sdfc_fail(l->c, l->c->at, "trap: expected a fractal in what this material is of");
     const sdfc_shape s = l->c->shapes[l->fractal];
     sdfc_point p = l->fractal_at;
-    int w = sdfc_literal(l, which), levels = sdfc_literal(l, s.whole[s.kind == SDFC_KIND_MANDELBULB]);
+    int w = sdfc_literal(l, which),
+        levels = sdfc_literal(l, s.whole[s.kind == SDFC_KIND_MANDELBULB]);
     int a[4] = {0};
-    for (int i = 0; i < 4 && s.kind != SDFC_KIND_MANDELBULB; i++) a[i] = s.number[i] ? sdfc_argument(l, s.number[i]) : 0;
+    for (int i = 0; i < 4 && s.kind != SDFC_KIND_MANDELBULB; i++)
+        a[i] = s.number[i] ? sdfc_argument(l, s.number[i]) : 0;
     switch (s.kind) {
     case SDFC_KIND_APOLLONIAN: return OP(l, trap_apollonian, p.x, p.y, p.z, levels, a[0], a[1], w);
     case SDFC_KIND_MANDELBOX: return OP(l, trap_mandelbox, p.x, p.y, p.z, levels, a[0], w);
-    case SDFC_KIND_JULIA: return OP(l, trap_julia, p.x, p.y, p.z, a[0], a[1], a[2], a[3], levels, w);
+    case SDFC_KIND_JULIA:
+        return OP(l, trap_julia, p.x, p.y, p.z, a[0], a[1], a[2], a[3], levels, w);
     default: {
         int power = sdfc_literal(l, s.whole[0]), bail = sdfc_literal(l, pow(10, 12.0 / s.whole[0]));
         return OP(l, trap_mandelbulb, p.x, p.y, p.z, power, bail, levels, w);
@@ -93,7 +102,8 @@ sdfc_look sdfc_lower_material(sdfc_lowering *l, int material, sdfc_point p) {
     memo known;
     known.count = 0;
     l->here = sdfc_settled(l, p);
-    for (int i = 0; i < MASU_SDFC_MATERIAL_SLOTS; i++) look.value[i] = lower_one(l, m.value[i], &known);
+    for (int i = 0; i < MASU_SDFC_MATERIAL_SLOTS; i++)
+        look.value[i] = lower_one(l, m.value[i], &known);
     return look;
 }
 
@@ -109,7 +119,8 @@ sdfc_look sdfc_mixed_look(sdfc_lowering *l, sdfc_look a, sdfc_look b, int share,
     if (!b.painted) b = plain_look(l);
     for (int i = 0; i < MASU_SDFC_MATERIAL_SLOTS; i++) {
         if (a.value[i] == b.value[i]) continue;
-        a.value[i] = whole ? OP(l, select, share, b.value[i], a.value[i]) : OP(l, mix, a.value[i], b.value[i], share);
+        a.value[i] = whole ? OP(l, select, share, b.value[i], a.value[i])
+                           : OP(l, mix, a.value[i], b.value[i], share);
     }
     return a;
 }

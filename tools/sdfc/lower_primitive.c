@@ -28,8 +28,8 @@ static int lower_capsule(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
         if (!sdfc_constant(l->c, d[k]) || !(l->c->exprs[d[k]].value > 0)) continue;
         double half = l->c->exprs[d[k]].value / 2;
         int middle = sdfc_apply(l->c, SDFC_add, a[k], sdfc_number(l->c, half), a[k]);
-        int e[5] = {sdfc_argument(l, a[i]), sdfc_argument(l, middle), sdfc_argument(l, a[j]), sdfc_literal(l, half),
-                    sdfc_argument(l, s->number[7])};
+        int e[5] = {sdfc_argument(l, a[i]), sdfc_argument(l, middle), sdfc_argument(l, a[j]),
+                    sdfc_literal(l, half), sdfc_argument(l, s->number[7])};
         return OP(l, stick, v[i], v[k], v[j], e[0], e[1], e[2], e[3], e[4]);
     }
     return plain(l, SDFC_capsule, s, p, 8);
@@ -43,13 +43,18 @@ int sdfc_lower_ground(sdfc_lowering *l, const int c[3], int radius, sdfc_point p
         at[i] = sdfc_argument(l, c[i]); /* in the slots of a translation */
     }
     int excess = sdfc_argument(l, k);
-    return OP(l, ground_sphere, p.x, p.y, p.z, at[0], at[1], at[2], excess, sdfc_argument(l, radius));
+    return OP(l, ground_sphere, p.x, p.y, p.z, at[0], at[1], at[2], excess,
+              sdfc_argument(l, radius));
 }
 
 static int lower_fractal(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
-    int levels = sdfc_literal(l, s->whole[0]), n[4] = {0}, count = s->kind == SDFC_KIND_JULIA ? 4 : s->kind == SDFC_KIND_MANDELBOX ? 1 : 2;
+    int levels = sdfc_literal(l, s->whole[0]), n[4] = {0},
+        count = s->kind == SDFC_KIND_JULIA       ? 4
+                : s->kind == SDFC_KIND_MANDELBOX ? 1
+                                                 : 2;
     for (int i = 0; i < count; i++) n[i] = sdfc_argument(l, s->number[i]);
-    if (s->kind == SDFC_KIND_APOLLONIAN) return OP(l, apollonian, p.x, p.y, p.z, levels, n[0], n[1]);
+    if (s->kind == SDFC_KIND_APOLLONIAN)
+        return OP(l, apollonian, p.x, p.y, p.z, levels, n[0], n[1]);
     if (s->kind == SDFC_KIND_MANDELBOX) {
         int d = OP(l, mandelbox, p.x, p.y, p.z, levels, n[0]);
         return OP(l, max, d, sdfc_outside_box(l, &s->facts.box, p));
@@ -75,7 +80,8 @@ int sdfc_lower_primitive(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     }
     case SDFC_KIND_NGON:
     case SDFC_KIND_STAR: {
-        int sector = sdfc_literal(l, 6.283185307179586 / s->whole[0]), r = sdfc_argument(l, s->number[0]);
+        int sector = sdfc_literal(l, 6.283185307179586 / s->whole[0]),
+            r = sdfc_argument(l, s->number[0]);
         int a = sdfc_argument(l, s->number[1]);
         if (s->kind == SDFC_KIND_NGON) return OP(l, ngon, p.x, p.y, sector, r, a);
         return OP(l, star, p.x, p.y, sector, r, a, sdfc_argument(l, s->number[2]));

@@ -13,13 +13,16 @@ static void add_names(sdfc_lowering *l, const sdfc_shape *s, const int in[3], in
         out[i] = in[i];
         if (s->extra[i] != 0) out[3 + i] = sdfc_argument(l, s->number[3 + i]);
     }
-    if (l->cells > 3) sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
+    if (l->cells > 3)
+        sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
     for (int i = 0; i < l->cells; i++) out[6 + i] = l->seed[i];
 }
 
 static int lower_in_cell(sdfc_lowering *l, const sdfc_shape *s, sdfc_point q, int seed) {
     if (s->cell) {
-        if (l->cells == SDFC_CELLS_DEEP) sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
+        if (l->cells == SDFC_CELLS_DEEP)
+            sdfc_fail(l->c, s->token,
+                      "expected at most 4 repetitions with names inside each other");
         l->cell[l->cells] = s->cell - 1;
         l->sector[l->cells] = s->kind == SDFC_KIND_POLAR;
         l->seed[l->cells++] = seed;
@@ -33,7 +36,8 @@ static int lower_in_cell(sdfc_lowering *l, const sdfc_shape *s, sdfc_point q, in
 }
 
 /* One cell, which has a name. */
-static int lower_alone(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, unsigned folded, bool at_fold) {
+static int lower_alone(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, unsigned folded,
+                       bool at_fold) {
     int zero = sdfc_literal(l, 0);
     int seed = OP(l, cell_seed, p.x, p.y, p.z, p.x, p.y, p.z, zero, zero, zero);
     int d = lower_in_cell(l, s, p, seed);
@@ -50,12 +54,14 @@ static int lower_nearest(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, in
         const int *at = call.operand + 4 * i;
         q[i] = at[0];
         if (!call.bits[i]) continue;
-        int unit = sdfc_literal(l, ldexp(1, 1 - call.select[i])), most = sdfc_literal(l, (1 << call.bits[i]) - 1);
+        int unit = sdfc_literal(l, ldexp(1, 1 - call.select[i])),
+            most = sdfc_literal(l, (1 << call.bits[i]) - 1);
         q[i] = OP(l, pick, nearest, unit, most, at[0], at[1], at[2], at[3]);
     }
     if (s->cell) {
         const int *in = call.operand + 18, *inverse = call.operand + 21;
-        seed = OP(l, cell_seed, in[0], in[1], in[2], q[0], q[1], q[2], inverse[0], inverse[1], inverse[2]);
+        seed = OP(l, cell_seed, in[0], in[1], in[2], q[0], q[1], q[2], inverse[0], inverse[1],
+                  inverse[2]);
     }
     sdfc_point at = {q[0], q[1], q[2], {p.offset[0], p.offset[1], p.offset[2]}};
     return lower_in_cell(l, s, at, seed);
@@ -106,7 +112,8 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     l->at_fold = !folded; /* one fold inside of another: whose axes they are is not followed */
     if (!bits && s->cell) return lower_alone(l, s, p, folded, at_fold);
     if (!bits) {
-        sdfc_point q = {cell[0][0], cell[1][0], cell[2][0], {p.offset[0], p.offset[1], p.offset[2]}};
+        sdfc_point q = {
+            cell[0][0], cell[1][0], cell[2][0], {p.offset[0], p.offset[1], p.offset[2]}};
         int d = sdfc_lower_shape(l, s->child[0], q);
         l->folded = folded, l->at_fold = at_fold;
         return d;
@@ -145,7 +152,8 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     }
     int d = sdfc_last_variable(l);
     if (l->surface) return lower_nearest(l, s, p, d);
-    return isfinite(s->extra[3]) ? sdfc_capped(l, d, sdfc_literal(l, s->extra[3]), &s->facts, p) : d;
+    return isfinite(s->extra[3]) ? sdfc_capped(l, d, sdfc_literal(l, s->extra[3]), &s->facts, p)
+                                 : d;
 }
 
 /* Folds into half a sector around +x, for a shape that is symmetric in z: only reflections, each of
@@ -174,10 +182,11 @@ static sdfc_point fold_sectors(sdfc_lowering *l, int count, sdfc_point p) {
 
 /* The least of a function's values at two points of the same y. `sectors`: theirs, if the
  * function takes it. */
-static int least_of_two(sdfc_lowering *l, const sdfc_shape *s, int function, sdfc_point q, sdfc_point r, const int *sectors,
-                        bool nearest) {
+static int least_of_two(sdfc_lowering *l, const sdfc_shape *s, int function, sdfc_point q,
+                        sdfc_point r, const int *sectors, bool nearest) {
     int none = sdfc_literal(l, 0);
-    if (l->cells > 3) sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
+    if (l->cells > 3)
+        sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
     sdfc_instr *call = sdfc_add_instr(l, nearest ? SDFC_CALL_NEAREST : SDFC_CALL_MIN);
     *call = (sdfc_instr){.op = nearest ? SDFC_CALL_NEAREST : SDFC_CALL_MIN,
                          .around = (int16_t)l->cells,
@@ -257,10 +266,14 @@ int sdfc_lower_polar(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     l->stretch = 0;
     int function = sdfc_child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
     l->stretch = stretch;
-    int sectors[2] = {0}, count = sdfc_literal(l, s->whole[0]), inverse = sdfc_literal(l, s->whole[0] / 6.283185307179586);
-    for (int k = 0; k < 2 && s->cell; k++) sectors[k] = OP(l, sector_number, k ? b : a, inverse, count);
+    int sectors[2] = {0}, count = sdfc_literal(l, s->whole[0]),
+        inverse = sdfc_literal(l, s->whole[0] / 6.283185307179586);
+    for (int k = 0; k < 2 && s->cell; k++)
+        sectors[k] = OP(l, sector_number, k ? b : a, inverse, count);
     int d = least_of_two(l, s, function, q, r, sectors, l->surface);
-    if (l->surface) return lower_in_cell(l, s, nearer(l, d, q, r), s->cell ? OP(l, select, d, sectors[1], sectors[0]) : 0);
+    if (l->surface)
+        return lower_in_cell(l, s, nearer(l, d, q, r),
+                             s->cell ? OP(l, select, d, sectors[1], sectors[0]) : 0);
     if (s->extra[0] == 2) return d;
     int edge = OP(l, mul, OP(l, len2, p.x, p.z), sdfc_literal(l, s->extra[3] * s->facts.lipschitz));
     return sdfc_capped(l, d, edge, &s->facts, p);

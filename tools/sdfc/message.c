@@ -46,7 +46,8 @@ void sdfc_report(sdfc *c, uint32_t line, uint32_t column, uint32_t offset, const
     for (size_t i = 1; i + skip < column; i++) append(out, size, &length, " ", 1);
     append(out, size, &length, "^", 1);
     if (c->open_kind >= 0) {
-        const char *shape = sdfc_kinds[c->open_kind].name, *arguments = sdfc_kinds[c->open_kind].arguments;
+        const char *shape = sdfc_kinds[c->open_kind].name,
+                   *arguments = sdfc_kinds[c->open_kind].arguments;
         append(out, size, &length, "\n    ", 5);
         append(out, size, &length, shape, strlen(shape));
         append(out, size, &length, "(", 1);
@@ -70,8 +71,8 @@ void sdfc_fail(sdfc *c, int token, const char *format, ...) {
     const sdfc_token *t = &c->tokens[token];
     if (c->call_token >= 0 && length >= 0 && length < 512) {
         const sdfc_token *from = &c->tokens[c->call_token];
-        snprintf(message + length, sizeof message - (size_t)length, " (in %.*s of line %u)", (int)from->length,
-                 c->text + from->offset, from->line);
+        snprintf(message + length, sizeof message - (size_t)length, " (in %.*s of line %u)",
+                 (int)from->length, c->text + from->offset, from->line);
     }
     sdfc_report(c, t->line, t->column, t->offset - (t->kind == TOKEN_RAW), message);
     give_up(c);
@@ -154,7 +155,8 @@ void sdfc_unknown(sdfc *c, int token, unsigned kinds, const char *what) {
     guess g = {.word = c->text + t->offset, .length = (int)t->length};
     g.least = g.length < 2 ? 1 : g.length < 6 ? 2 : g.length / 3 + 1;
     if (kinds & SDFC_NAMES_SHAPES) {
-        for (int i = 0; i < SDFC_KIND_COUNT; i++) consider(&g, sdfc_kinds[i].name, (int)strlen(sdfc_kinds[i].name));
+        for (int i = 0; i < SDFC_KIND_COUNT; i++)
+            consider(&g, sdfc_kinds[i].name, (int)strlen(sdfc_kinds[i].name));
     }
     const char *function;
     for (int i = 0; kinds & SDFC_NAMES_NUMBERS && (function = sdfc_function_name(i)); i++) {
@@ -163,13 +165,14 @@ void sdfc_unknown(sdfc *c, int token, unsigned kinds, const char *what) {
     for (int i = 0; i < c->symbol_count; i++) {
         const sdfc_symbol *s = &c->symbols[i];
         if (i >= c->hidden_from && i < c->hidden_to) continue;
-        bool fits = s->kind == SYMBOL_DEF || (s->kind == SYMBOL_SHAPE && kinds & SDFC_NAMES_SHAPES) ||
+        bool fits = s->kind == SYMBOL_DEF ||
+                    (s->kind == SYMBOL_SHAPE && kinds & SDFC_NAMES_SHAPES) ||
                     (s->kind == SYMBOL_LET && kinds & SDFC_NAMES_NUMBERS) ||
                     (s->kind == SYMBOL_MATERIAL && kinds & SDFC_NAMES_MATERIALS);
         if (fits && !(kinds == SDFC_NAMES_MATERIALS && s->kind == SYMBOL_DEF))
             consider(&g, c->text + s->offset, (int)s->length);
     }
     if (!g.best) sdfc_expected(c, token, "%s", what);
-    sdfc_fail(c, token, "expected %s, found \"%.*s\": did you mean \"%.*s\"?", what, g.length < 40 ? g.length : 40,
-              g.word, g.best_length, g.best);
+    sdfc_fail(c, token, "expected %s, found \"%.*s\": did you mean \"%.*s\"?", what,
+              g.length < 40 ? g.length : 40, g.word, g.best_length, g.best);
 }

@@ -208,7 +208,8 @@ static void parse_material(sdfc *c) {
 int sdfc_parse_material_name(sdfc *c) {
     int token = sdfc_need_name(c, "a material", false);
     const sdfc_symbol *s = sdfc_find(c, token);
-    if (!s || s->kind != SYMBOL_MATERIAL) sdfc_unknown(c, token, SDFC_NAMES_MATERIALS, "a material");
+    if (!s || s->kind != SYMBOL_MATERIAL)
+        sdfc_unknown(c, token, SDFC_NAMES_MATERIALS, "a material");
     return s->index;
 }
 

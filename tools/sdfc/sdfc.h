@@ -113,10 +113,12 @@ const masu_sdfc_part *masu_sdfc_field_parts(const masu_sdfc_field *field, uint32
 size_t masu_sdfc_field_room(const masu_sdfc_field *field);
 /* The field of one part, which must not be a glsl block (`user`): at most `lipschitz` times the
  * distance. */
-double masu_sdfc_field_run(const masu_sdfc_field *field, uint32_t part, const double p[3], double *room);
+double masu_sdfc_field_run(const masu_sdfc_field *field, uint32_t part, const double p[3],
+                           double *room);
 /* Its material at p, for a normal and the width of a pixel there: albedo, roughness, emissive,
  * metallic. */
-void masu_sdfc_field_material(const masu_sdfc_field *field, uint32_t part, const double p[3], const double n[3],
-                              double width, double *room, double out[MASU_SDFC_MATERIAL_SLOTS]);
+void masu_sdfc_field_material(const masu_sdfc_field *field, uint32_t part, const double p[3],
+                              const double n[3], double width, double *room,
+                              double out[MASU_SDFC_MATERIAL_SLOTS]);
 
 #endif

@@ -165,7 +165,8 @@ static int parse_call(sdfc *c, int kind, int token) {
     sdfc_shape s = {.kind = kind, .token = token};
     int children[SDFC_CHILDREN_MAX], count = 0, numbers = 0, wholes = 0;
     int around = c->open_kind, symbols = c->symbol_count;
-    bool repeats = kind == SDFC_KIND_REPEAT || kind == SDFC_KIND_REPEAT_LIMITED || kind == SDFC_KIND_POLAR;
+    bool repeats =
+        kind == SDFC_KIND_REPEAT || kind == SDFC_KIND_REPEAT_LIMITED || kind == SDFC_KIND_POLAR;
     c->open_kind = kind;
     sdfc_need_mark(c, '(');
     bool first = true;
@@ -210,7 +211,8 @@ int sdfc_parse_shape(sdfc *c) {
         const sdfc_symbol *s = sdfc_find(c, token);
         sdfc_value none;
         bool is_def = s && s->kind == SYMBOL_DEF && c->defs[s->index].is_shape;
-        if (!is_def && (!s || s->kind != SYMBOL_SHAPE)) sdfc_unknown(c, token, SDFC_NAMES_SHAPES, "a shape");
+        if (!is_def && (!s || s->kind != SYMBOL_SHAPE))
+            sdfc_unknown(c, token, SDFC_NAMES_SHAPES, "a shape");
         if (is_def) sdfc_need_mark(c, '(');
         shape = is_def ? sdfc_call_def(c, s->index, token, &none) : s->index;
     }
@@ -220,19 +222,25 @@ int sdfc_parse_shape(sdfc *c) {
 
 bool masu_sdfc_put_shapes(FILE *to) {
     fputs("# Shapes of the SDF language\n\n"
-          "Generated from `tools/sdfc/kinds.inc` by `make docs-tables`. [sdf.md](sdf.md) describes the language. Primitives are\n"
-          "centred at the origin unless noted, and their axis is y. `h` is half the height. Angles are in radians. Flat shapes\n"
+          "Generated from `tools/sdfc/kinds.inc` by `make docs-tables`. [sdf.md](sdf.md) describes "
+          "the language. Primitives are\n"
+          "centred at the origin unless noted, and their axis is y. `h` is half the height. Angles "
+          "are in radians. Flat shapes\n"
           "have no end along z; `extrude` and `revolve` use the section at z = 0 of any shape.\n\n"
-          "The Lipschitz constant bounds the slope of the field. L: the constant of the operand; largest: the largest constant\n"
-          "of the operands. The last column describes the field outside the solid. Exact: it is the distance. Bound: it is at\n"
-          "most the distance. Estimate: it exceeds the distance at less than 1 point in 200. Unit tests check every shape,\n"
+          "The Lipschitz constant bounds the slope of the field. L: the constant of the operand; "
+          "largest: the largest constant\n"
+          "of the operands. The last column describes the field outside the solid. Exact: it is "
+          "the distance. Bound: it is at\n"
+          "most the distance. Estimate: it exceeds the distance at less than 1 point in 200. Unit "
+          "tests check every shape,\n"
           "with a million pairs of points under `LONG=1`.\n\n"
           "| shape | description | Lipschitz constant | field |\n|---|---|---|---|\n",
           to);
     for (int i = 0; i < SDFC_KIND_COUNT; i++) {
         const sdfc_kind *k = &sdfc_kinds[i];
         if (i == SDFC_KIND_USER) continue;
-        fprintf(to, "| `%s(%s)` | %s | %s | %s |\n", k->name, k->arguments, k->meaning, k->lipschitz, k->distance);
+        fprintf(to, "| `%s(%s)` | %s | %s | %s |\n", k->name, k->arguments, k->meaning,
+                k->lipschitz, k->distance);
     }
     return fflush(to) == 0 && !ferror(to);
 }

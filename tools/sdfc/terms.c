@@ -43,7 +43,8 @@ static int number_terms(sdfc_program *p, int least) {
     for (int i = 0; i < p->function_count; i++) {
         sdfc_function *f = &p->functions[i];
         for (int t = 0; t < f->term_count; t++) {
-            bool worth = !f->terms[t].cap && cost_of_term(f, &f->terms[t]) >= least && count < WORD - 1;
+            bool worth =
+                !f->terms[t].cap && cost_of_term(f, &f->terms[t]) >= least && count < WORD - 1;
             f->terms[t].bit = worth ? count++ : -1;
         }
         for (int t = 0; t < f->term_count; t++) f->terms[t].before = bits_before(f, t);
@@ -88,7 +89,8 @@ void sdfc_assign_terms(sdfc *c) {
             alike = same_terms(first, &c->parts[group->first_part + k].program);
         }
         int each = alike ? number_terms(first, LEAST_COST) : 0, all = each * group->part_count;
-        if (all <= WORD && place_of(next, all) + all <= MASU_SDFC_BLOCK_WORDS_MAX * WORD && all > 0) {
+        if (all <= WORD && place_of(next, all) + all <= MASU_SDFC_BLOCK_WORDS_MAX * WORD &&
+            all > 0) {
             group->term_count = each;
             group->first_term = place_of(next, all);
             next = group->first_term + all;
@@ -108,7 +110,8 @@ uint32_t sdfc_block_words(const sdfc *c) {
 
 uint32_t sdfc_term_word(const sdfc *c, int word) {
     uint32_t bits = 0;
-    for (int k = c->part_count; k < c->part_count + c->term_bits; k++) bits |= k / WORD == word ? 1u << k % WORD : 0;
+    for (int k = c->part_count; k < c->part_count + c->term_bits; k++)
+        bits |= k / WORD == word ? 1u << k % WORD : 0;
     return bits;
 }
 

@@ -49,7 +49,8 @@ static uint32_t least_words(uint32_t op) {
 
 /* A name ends within its instruction. */
 static int name_ends(const spirv_instruction *i) {
-    return (i->op != SPIRV_NAME && i->op != SPIRV_MEMBER_NAME) || memchr(i->word + i->count - 1, 0, sizeof *i->word);
+    return (i->op != SPIRV_NAME && i->op != SPIRV_MEMBER_NAME) ||
+           memchr(i->word + i->count - 1, 0, sizeof *i->word);
 }
 
 int spirv_from_words(const uint32_t *words, size_t count, spirv_module *out) {

@@ -9,7 +9,12 @@
 #include <string.h>
 
 enum { UNIFORM = 2, PUSH_CONSTANT = 9, STORAGE_BUFFER = 12 };
-enum { COMPOSITE_EXTRACT = 81, COMPOSITE_INSERT = 82, VECTOR_SHUFFLE = 79, VECTOR_EXTRACT_DYNAMIC = 77 };
+enum {
+    COMPOSITE_EXTRACT = 81,
+    COMPOSITE_INSERT = 82,
+    VECTOR_SHUFFLE = 79,
+    VECTOR_EXTRACT_DYNAMIC = 77
+};
 enum { DECORATION_ROW_MAJOR = 4, DEPTH = 12 };
 #define ANY 0xFFFFFFFFu
 
@@ -51,7 +56,9 @@ typedef struct state {
 static const spirv_instruction *def(const state *s, uint32_t id) { return spirv_def(&s->m, id); }
 
 /* What is known of a pointer; one that is no id is not known. */
-static chain *chain_of(const state *s, uint32_t id) { return &s->chains[id < s->m.bound ? id : s->m.bound]; }
+static chain *chain_of(const state *s, uint32_t id) {
+    return &s->chains[id < s->m.bound ? id : s->m.bound];
+}
 
 static bool same(const place *a, const place *b, uint32_t depth) {
     return a->root == b->root && a->depth >= depth && b->depth >= depth &&
@@ -67,7 +74,8 @@ static bool start(const state *s, uint32_t base, chain *c) {
         const spirv_instruction *pointer = def(s, b->word[1]);
         uint32_t storage = b->word[3];
         if (!pointer || pointer->op != SPIRV_TYPE_POINTER) return false;
-        if (storage != UNIFORM && storage != PUSH_CONSTANT && storage != STORAGE_BUFFER) return false;
+        if (storage != UNIFORM && storage != PUSH_CONSTANT && storage != STORAGE_BUFFER)
+            return false;
         *c = (chain){.known = true, .at = {.root = base}, .storage = storage, .type = pointer->word[3]};
         return true;
     }
@@ -91,7 +99,9 @@ static bool follow(const state *s, const spirv_instruction *i, chain *c) {
         }
         if (c->at.depth == DEPTH) return false;
         bool structure = type->op == SPIRV_TYPE_STRUCT;
-        if (structure && (!number || number->op != SPIRV_CONSTANT || number->word[3] >= type->count - 2)) return false;
+        if (structure &&
+            (!number || number->op != SPIRV_CONSTANT || number->word[3] >= type->count - 2))
+            return false;
         if (type->count < 3) return false; /* made of nothing */
         c->at.index[c->at.depth++] = structure ? number->word[3] : ANY;
         c->type = type->word[structure ? 2 + number->word[3] : 2];
@@ -101,7 +111,8 @@ static bool follow(const state *s, const spirv_instruction *i, chain *c) {
 
 static group *group_of(state *s, const place *at) {
     for (size_t k = 0; k < s->group_count; k++) {
-        if (s->groups[k].at.depth == at->depth && same(&s->groups[k].at, at, at->depth)) return &s->groups[k];
+        if (s->groups[k].at.depth == at->depth && same(&s->groups[k].at, at, at->depth))
+            return &s->groups[k];
     }
     s->groups[s->group_count] = (group){.at = *at};
     return &s->groups[s->group_count++];
@@ -115,7 +126,8 @@ static void note_load(state *s, const spirv_instruction *load) {
     if (c.component) {
         const spirv_instruction *number = def(s, c.number);
         s->chains[id].loaded = true;
-        group_of(s, &c.at)->parts |= number && number->op == SPIRV_CONSTANT ? 1u << (number->word[3] & 31) : ANY;
+        group_of(s, &c.at)->parts |=
+            number && number->op == SPIRV_CONSTANT ? 1u << (number->word[3] & 31) : ANY;
     } else if (op == SPIRV_TYPE_VECTOR) {
         group_of(s, &c.at)->parts = ANY;
     } else if (op == SPIRV_TYPE_STRUCT || op == SPIRV_TYPE_ARRAY || op == SPIRV_TYPE_MATRIX) {
@@ -133,7 +145,8 @@ static void note_uses(state *s, const spirv_instruction *i) {
         uint32_t id = i->word[k];
         bool result = k == 2 && id < s->m.bound && def(s, id) == i;
         if (i->op == SPIRV_EXT_INST && k == 4) continue;
-        if (id < s->m.bound && !result && !(i->op == SPIRV_LOAD && k == 3)) s->chains[id].alone = false;
+        if (id < s->m.bound && !result && !(i->op == SPIRV_LOAD && k == 3))
+            s->chains[id].alone = false;
     }
 }
 
@@ -141,7 +154,8 @@ static void note_uses(state *s, const spirv_instruction *i) {
 static bool several(state *s, const chain *c) {
     uint32_t parts = group_of(s, &c->at)->parts;
     for (size_t k = 0; k < s->whole_count; k++) {
-        if (s->wholes[k].depth <= c->at.depth && same(&s->wholes[k], &c->at, s->wholes[k].depth)) parts = ANY;
+        if (s->wholes[k].depth <= c->at.depth && same(&s->wholes[k], &c->at, s->wholes[k].depth))
+            parts = ANY;
     }
     return (parts & (parts - 1)) != 0;
 }
@@ -160,7 +174,8 @@ static void decide(state *s) {
         const spirv_instruction *i = &s->m.list[k];
         chain c = {0};
         inside |= i->op == SPIRV_FUNCTION;
-        if (inside && (i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN) && follow(s, i, &c)) {
+        if (inside && (i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN) &&
+            follow(s, i, &c)) {
             c.alone = true;
             s->chains[i->word[2]] = c;
         }
@@ -183,7 +198,8 @@ static void decide(state *s) {
 
 /* Room is for each instruction of the module to become two, and for types of pointers. */
 static void put(state *s, const uint32_t *words, uint32_t count) {
-    if (s->out_count + count <= s->out_room) memcpy(s->out + s->out_count, words, count * sizeof *words);
+    if (s->out_count + count <= s->out_room)
+        memcpy(s->out + s->out_count, words, count * sizeof *words);
     s->out_count += count;
 }
 
@@ -196,7 +212,8 @@ typedef struct pointer_type {
 static void put_pointers(state *s, pointer_type *list, size_t *count) {
     for (size_t k = 0; k < s->m.count; k++) {
         const spirv_instruction *i = &s->m.list[k];
-        if (i->op == SPIRV_TYPE_POINTER) list[(*count)++] = (pointer_type){i->word[2], i->word[3], i->word[1]};
+        if (i->op == SPIRV_TYPE_POINTER)
+            list[(*count)++] = (pointer_type){i->word[2], i->word[3], i->word[1]};
     }
     for (uint32_t id = 0; id < s->m.bound; id++) {
         const chain *c = &s->chains[id];
@@ -225,8 +242,10 @@ static void put_load(state *s, const spirv_instruction *i, const chain *c) {
     uint32_t id = s->bound++;
     put(s, (uint32_t[]){i->word[0], c->type, id, c->vector}, 4);
     put(s, i->word + 4, i->count - 4);
-    put(s, (uint32_t[]){5u << 16 | (constant ? COMPOSITE_EXTRACT : VECTOR_EXTRACT_DYNAMIC), i->word[1],
-                        i->word[2], id, constant ? number->word[3] : c->number}, 5);
+    put(s,
+        (uint32_t[]){5u << 16 | (constant ? COMPOSITE_EXTRACT : VECTOR_EXTRACT_DYNAMIC), i->word[1],
+                     i->word[2], id, constant ? number->word[3] : c->number},
+        5);
 }
 
 static void write_out(state *s, pointer_type *list) {

@@ -25,7 +25,8 @@ static VkResult make_layouts(masu_compose *c) {
             .descriptorCount = 1,
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
     }
-    VkDescriptorSetLayoutCreateInfo set = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+    VkDescriptorSetLayoutCreateInfo set = {.sType =
+                                               VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                            .bindingCount = BINDINGS,
                                            .pBindings = bindings};
     VkResult r = vkCreateDescriptorSetLayout(c->host->device, &set, NULL, &c->set_layout);
@@ -98,13 +99,13 @@ static void drop_size(masu_compose *c) {
 bool masu_compose_resize(masu_compose *c, VkExtent2D output, char *error, size_t size) {
     uint64_t bytes = (uint64_t)4 * output.width * output.height;
     drop_size(c);
-    if (!masu_headless_buffer_create(c->host, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &c->map, error,
-                                     size)) {
+    if (!masu_headless_buffer_create(c->host, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &c->map,
+                                     error, size)) {
         return false;
     }
     memset(c->map.mapped, 0, (size_t)bytes);
-    return masu_headless_target_create(c->host, output.width, output.height, VK_FORMAT_R8G8B8A8_UNORM,
-                                       true, &c->shown, error, size);
+    return masu_headless_target_create(c->host, output.width, output.height,
+                                       VK_FORMAT_R8G8B8A8_UNORM, true, &c->shown, error, size);
 }
 
 void masu_compose_close(masu_compose *c) {
@@ -125,9 +126,10 @@ void masu_compose_close(masu_compose *c) {
 
 static void write_set(masu_compose *c, uint32_t slot, const masu_composition *what) {
     const masu_headless_target *b = what->b ? what->b : what->a;
-    VkDescriptorImageInfo images[3] = {{.imageView = what->a->view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL},
-                                       {.imageView = b->view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL},
-                                       {.imageView = c->shown.view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL}};
+    VkDescriptorImageInfo images[3] = {
+        {.imageView = what->a->view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL},
+        {.imageView = b->view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL},
+        {.imageView = c->shown.view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL}};
     VkDescriptorBufferInfo map = {c->map.buffer, 0, VK_WHOLE_SIZE};
     VkWriteDescriptorSet writes[BINDINGS];
     for (uint32_t i = 0; i < BINDINGS; i++) {
@@ -144,8 +146,8 @@ static void write_set(masu_compose *c, uint32_t slot, const masu_composition *wh
     vkUpdateDescriptorSets(c->host->device, BINDINGS, writes, 0, NULL);
 }
 
-static VkImageMemoryBarrier change(VkImage image, VkImageLayout from, VkImageLayout to, VkAccessFlags done,
-                                   VkAccessFlags next) {
+static VkImageMemoryBarrier change(VkImage image, VkImageLayout from, VkImageLayout to,
+                                   VkAccessFlags done, VkAccessFlags next) {
     return (VkImageMemoryBarrier){.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
                                   .srcAccessMask = done,
                                   .dstAccessMask = next,
@@ -159,29 +161,34 @@ static VkImageMemoryBarrier change(VkImage image, VkImageLayout from, VkImageLay
 
 /* The first barrier waits for all earlier commands: the library's frame, and the previous frame's
  * blit from `shown`. */
-static void draw(masu_compose *c, VkCommandBuffer cmd, uint32_t slot, const masu_composition *what) {
-    const VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, general = VK_IMAGE_LAYOUT_GENERAL;
+static void draw(masu_compose *c, VkCommandBuffer cmd, uint32_t slot,
+                 const masu_composition *what) {
+    const VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                        general = VK_IMAGE_LAYOUT_GENERAL;
     const VkAccessFlags written = VK_ACCESS_MEMORY_WRITE_BIT, read = VK_ACCESS_SHADER_READ_BIT;
     VkImageMemoryBarrier before[3] = {
         change(c->shown.image, VK_IMAGE_LAYOUT_UNDEFINED, general, 0, VK_ACCESS_SHADER_WRITE_BIT),
         change(what->a->image, source, general, written, read)};
-    VkImageMemoryBarrier after[2] = {change(what->a->image, general, source, 0, VK_ACCESS_TRANSFER_READ_BIT)};
+    VkImageMemoryBarrier after[2] = {
+        change(what->a->image, general, source, 0, VK_ACCESS_TRANSFER_READ_BIT)};
     uint32_t count = what->b ? 3 : 2;
     if (what->b) {
         before[2] = change(what->b->image, source, general, written, read);
         after[1] = change(what->b->image, general, source, 0, VK_ACCESS_TRANSFER_READ_BIT);
     }
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0,
-                         NULL, 0, NULL, count, before);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0, NULL, 0, NULL, count, before);
     uint32_t width = c->shown.width, height = c->shown.height;
     masu_compose_push push = {(int32_t)width, (int32_t)height,
-                              (int32_t)(what->b && what->split < width ? what->split : width), what->map};
+                              (int32_t)(what->b && what->split < width ? what->split : width),
+                              what->map};
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, c->pipeline);
-    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, c->layout, 0, 1, &c->sets[slot], 0, NULL);
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, c->layout, 0, 1, &c->sets[slot], 0,
+                            NULL);
     vkCmdPushConstants(cmd, c->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
     vkCmdDispatch(cmd, (width + TILE - 1) / TILE, (height + TILE - 1) / TILE, 1);
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL,
-                         0, NULL, count - 1, after);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         0, 0, NULL, 0, NULL, count - 1, after);
 }
 
 /* Without a renderer the window has one background colour. */
@@ -191,8 +198,8 @@ static void clear(masu_compose *c, VkCommandBuffer cmd) {
     const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     VkImageMemoryBarrier before =
         change(c->shown.image, VK_IMAGE_LAYOUT_UNDEFINED, general, 0, VK_ACCESS_TRANSFER_WRITE_BIT);
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0,
-                         NULL, 1, &before);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0,
+                         0, NULL, 0, NULL, 1, &before);
     vkCmdClearColorImage(cmd, c->shown.image, general, &dark, 1, &all);
 }
 
@@ -203,7 +210,8 @@ static void draw_ui(masu_compose *c, VkCommandBuffer cmd) {
                VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
                VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT);
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-                         VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 0, NULL, 0, NULL, 1, &before);
+                         VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 0, NULL, 0, NULL, 1,
+                         &before);
     masu_ui_record(cmd);
 }
 
@@ -219,16 +227,16 @@ static void show(masu_compose *c, VkCommandBuffer cmd, VkImage image, VkExtent2D
         .srcOffsets = {{0, 0, 0}, {(int32_t)c->shown.width, (int32_t)c->shown.height, 1}},
         .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
         .dstOffsets = {{0, 0, 0}, {(int32_t)extent.width, (int32_t)extent.height, 1}}};
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0,
-                         NULL, 1, &before);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
+                         NULL, 0, NULL, 1, &before);
     vkCmdBlitImage(cmd, c->shown.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image, to, 1, &blit,
                    VK_FILTER_NEAREST);
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0, NULL,
-                         0, NULL, 1, &after);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
+                         0, 0, NULL, 0, NULL, 1, &after);
 }
 
-bool masu_compose_record(masu_compose *c, uint32_t slot, const masu_composition *what, VkImage image,
-                         VkExtent2D extent, char *error, size_t size) {
+bool masu_compose_record(masu_compose *c, uint32_t slot, const masu_composition *what,
+                         VkImage image, VkExtent2D extent, char *error, size_t size) {
     VkCommandBuffer *cmd = &c->commands[slot];
     if (*cmd) vkFreeCommandBuffers(c->host->device, c->host->pool, 1, cmd);
     *cmd = VK_NULL_HANDLE;

@@ -39,7 +39,7 @@ void masu_compose_close(masu_compose *c);
 
 /* Records the slot's commands, including the user interface of this frame. Submit them after the
  * commands that draw A and B. */
-bool masu_compose_record(masu_compose *c, uint32_t slot, const masu_composition *what, VkImage image,
-                         VkExtent2D extent, char *error, size_t size);
+bool masu_compose_record(masu_compose *c, uint32_t slot, const masu_composition *what,
+                         VkImage image, VkExtent2D extent, char *error, size_t size);
 
 #endif

@@ -83,7 +83,8 @@ static void show(masu_viewer *v) {
     bool fits = d->width == v->compose.shown.width && d->height == v->compose.shown.height;
     if (!d->failed && fits) {
         masu_viewer_settle(v);
-        for (size_t i = 0; i < (size_t)d->width * d->height; i++) to[i] = masu_difference_color(d->errors[i]);
+        for (size_t i = 0; i < (size_t)d->width * d->height; i++)
+            to[i] = masu_difference_color(d->errors[i]);
         d->known = true;
     }
     drop(d);

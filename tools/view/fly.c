@@ -8,7 +8,9 @@
 #define FOREVER 1e12   /* seconds, after the end of any path */
 #define LONGEST 1e6    /* seconds, upper bound of the search for the end */
 
-static double clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+static double clamp(double x, double low, double high) {
+    return x < low ? low : x > high ? high : x;
+}
 
 void masu_fly_from(masu_fly *fly, const masu_camera *camera) {
     const double f[3] = {(double)camera->forward[0], (double)camera->forward[1],
@@ -16,7 +18,8 @@ void masu_fly_from(masu_fly *fly, const masu_camera *camera) {
     double length = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     memcpy(fly->position, camera->position, sizeof fly->position);
     fly->yaw = atan2(-f[0], -f[2]);
-    fly->pitch = length > 0.0 ? clamp(asin(clamp(f[1] / length, -1.0, 1.0)), -STEEPEST, STEEPEST) : 0.0;
+    fly->pitch =
+        length > 0.0 ? clamp(asin(clamp(f[1] / length, -1.0, 1.0)), -STEEPEST, STEEPEST) : 0.0;
     fly->fov_y = camera->fov_y;
     fly->near_distance = camera->near_distance;
 }
@@ -33,7 +36,8 @@ static void axes(const masu_fly *fly, double forward[3], double right[3]) {
 
 bool masu_fly_move(masu_fly *fly, const masu_fly_wish *wish, double seconds) {
     bool turned = wish->yaw != 0.0 || wish->pitch != 0.0;
-    double length = sqrt(wish->right * wish->right + wish->up * wish->up + wish->forward * wish->forward);
+    double length =
+        sqrt(wish->right * wish->right + wish->up * wish->up + wish->forward * wish->forward);
     fly->yaw = remainder(fly->yaw + wish->yaw, 2.0 * 3.14159265358979323846);
     fly->pitch = clamp(fly->pitch + wish->pitch, -STEEPEST, STEEPEST);
     if (!(length > 0.0)) return turned;
@@ -74,7 +78,8 @@ static bool rests(const masu_renderer *m, double time, const masu_camera *end) {
  * after the end, so a bisection finds the first time with the final camera. */
 double masu_fly_path_end(const masu_renderer *m) {
     masu_camera end;
-    if (masu_camera_at(m, FOREVER, &end, NULL) || rests(m, 0.0, &end) || !rests(m, LONGEST, &end)) return 0.0;
+    if (masu_camera_at(m, FOREVER, &end, NULL) || rests(m, 0.0, &end) || !rests(m, LONGEST, &end))
+        return 0.0;
     double moving = 0.0, resting = LONGEST;
     while (resting - moving > 1e-4) {
         double middle = 0.5 * (moving + resting);

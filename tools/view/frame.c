@@ -35,7 +35,8 @@ static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
     v->pending[slot] = false;
     v->losses = 0;
     if (v->slot_known[slot]) {
-        uint64_t begin = v->submitted_ns[slot] > v->finished_ns ? v->submitted_ns[slot] : v->finished_ns;
+        uint64_t begin =
+            v->submitted_ns[slot] > v->finished_ns ? v->submitted_ns[slot] : v->finished_ns;
         if (seen && v->show == MASU_SHOW_A && !v->scripted)
             masu_frame_wall(v->a.m, v->slot_of_a[slot], (double)(now - begin) / 1e6);
         (void)masu_stats(v->a.m, v->slot_of_a[slot], &v->stats, NULL);
@@ -79,8 +80,8 @@ static bool submit(masu_viewer *v, uint32_t slot, uint32_t image) {
                                    .b = v->show == MASU_SHOW_SPLIT ? &v->b.target : NULL,
                                    .split = (uint32_t)(v->split * v->a.target.width + 0.5),
                                    .map = v->show == MASU_SHOW_MAP && v->difference.known};
-    if (!masu_compose_record(&v->compose, slot, &what, v->window.images[image], v->window.extent, v->error,
-                             sizeof v->error)) {
+    if (!masu_compose_record(&v->compose, slot, &what, v->window.images[image], v->window.extent,
+                             v->error, sizeof v->error)) {
         return false;
     }
     VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;

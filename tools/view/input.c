@@ -86,7 +86,8 @@ bool masu_hands_event(masu_hands *h, masu_viewer *v, const SDL_Event *e) {
         if (!v->a.m) return true;
         if (e->button.button == SDL_BUTTON_LEFT) h->dragging = down && v->show == MASU_SHOW_SPLIT;
         if (h->dragging) drag(v, e->button.x);
-        else if (down && e->button.button == SDL_BUTTON_LEFT) masu_pick_click(v, e->button.x, e->button.y);
+        else if (down && e->button.button == SDL_BUTTON_LEFT)
+            masu_pick_click(v, e->button.x, e->button.y);
         return true;
     }
     case SDL_MOUSEMOTION:
@@ -105,7 +106,8 @@ bool masu_hands_event(masu_hands *h, masu_viewer *v, const SDL_Event *e) {
         if (!h->pad) h->pad = SDL_GameControllerOpen(e->cdevice.which);
         return true;
     case SDL_CONTROLLERDEVICEREMOVED:
-        if (h->pad && SDL_GameControllerFromInstanceID(e->cdevice.which) == h->pad) masu_hands_close(h);
+        if (h->pad && SDL_GameControllerFromInstanceID(e->cdevice.which) == h->pad)
+            masu_hands_close(h);
         return true;
     case SDL_CONTROLLERBUTTONDOWN: masu_pad_pressed(v, e->cbutton.button); return true;
     default: return true;
@@ -123,7 +125,8 @@ static void add_pad(SDL_GameController *pad, masu_fly_wish *w, double seconds) {
     w->forward -= axis(pad, SDL_CONTROLLER_AXIS_LEFTY);
     w->yaw -= STICK_TURN * seconds * axis(pad, SDL_CONTROLLER_AXIS_RIGHTX);
     w->pitch -= STICK_TURN * seconds * axis(pad, SDL_CONTROLLER_AXIS_RIGHTY);
-    w->up += axis(pad, SDL_CONTROLLER_AXIS_TRIGGERRIGHT) - axis(pad, SDL_CONTROLLER_AXIS_TRIGGERLEFT);
+    w->up +=
+        axis(pad, SDL_CONTROLLER_AXIS_TRIGGERRIGHT) - axis(pad, SDL_CONTROLLER_AXIS_TRIGGERLEFT);
     if (SDL_GameControllerGetButton(pad, SDL_CONTROLLER_BUTTON_LEFTSTICK)) w->fast = true;
 }
 
@@ -136,7 +139,8 @@ void masu_hands_move(masu_hands *h, masu_viewer *v, double seconds) {
                        .fast = h->held[FAST]};
     if (h->pad) add_pad(h->pad, &w, seconds);
     h->yaw = h->pitch = 0.0;
-    bool moves = w.right != 0.0 || w.up != 0.0 || w.forward != 0.0 || w.yaw != 0.0 || w.pitch != 0.0;
+    bool moves =
+        w.right != 0.0 || w.up != 0.0 || w.forward != 0.0 || w.yaw != 0.0 || w.pitch != 0.0;
     if (!moves || !v->a.m) return;
     v->recorder.plays = false;
     if (v->on_path) { /* manual control leaves the path at the current camera */

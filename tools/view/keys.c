@@ -6,8 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const float targets[] = {2.0f,   4.0f,   6.94f,  8.33f,  11.11f, 13.89f, 16.67f, 20.0f, 22.22f, 33.33f,
-                                50.0f,  66.67f, 100.0f, 200.0f, 300.0f, 500.0f, 700.0f, 1000.0f};
+static const float targets[] = {2.0f,   4.0f,   6.94f,  8.33f,  11.11f, 13.89f,
+                                16.67f, 20.0f,  22.22f, 33.33f, 50.0f,  66.67f,
+                                100.0f, 200.0f, 300.0f, 500.0f, 700.0f, 1000.0f};
 enum { TARGETS = sizeof targets / sizeof *targets };
 
 static void take_rung(masu_viewer *v, uint32_t rung) {
@@ -138,8 +139,10 @@ bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
     case SDLK_F8: masu_panels_show(v, MASU_TAB_SCENE + (uint32_t)(key - SDLK_F5)); return true;
     case SDLK_F10: masu_panels_show(v, MASU_TAB_CAPTURE); return true;
     case SDLK_F9: masu_capture_film(v, !v->recorder.films); return true;
-    case SDLK_F2: return masu_viewer_show(v, v->show == MASU_SHOW_SPLIT ? MASU_SHOW_A : MASU_SHOW_SPLIT);
-    case SDLK_F3: return masu_viewer_show(v, v->show == MASU_SHOW_MAP ? MASU_SHOW_A : MASU_SHOW_MAP);
+    case SDLK_F2:
+        return masu_viewer_show(v, v->show == MASU_SHOW_SPLIT ? MASU_SHOW_A : MASU_SHOW_SPLIT);
+    case SDLK_F3:
+        return masu_viewer_show(v, v->show == MASU_SHOW_MAP ? MASU_SHOW_A : MASU_SHOW_MAP);
     case SDLK_b: store_reference(v); return true;
     case SDLK_LEFTBRACKET: v->split = fmax(v->split - 0.02 * far, 0.0); return true;
     case SDLK_RIGHTBRACKET: v->split = fmin(v->split + 0.02 * far, 1.0); return true;
@@ -149,11 +152,16 @@ bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
 
 void masu_pad_pressed(masu_viewer *v, uint8_t button) {
     static const SDL_Keycode keys[SDL_CONTROLLER_BUTTON_MAX] = {
-        [SDL_CONTROLLER_BUTTON_A] = SDLK_SPACE,         [SDL_CONTROLLER_BUTTON_B] = SDLK_p,
-        [SDL_CONTROLLER_BUTTON_X] = SDLK_F2,            [SDL_CONTROLLER_BUTTON_Y] = SDLK_F1,
-        [SDL_CONTROLLER_BUTTON_START] = SDLK_TAB,       [SDL_CONTROLLER_BUTTON_BACK] = SDLK_g,
-        [SDL_CONTROLLER_BUTTON_DPAD_UP] = SDLK_UP,      [SDL_CONTROLLER_BUTTON_DPAD_DOWN] = SDLK_DOWN,
-        [SDL_CONTROLLER_BUTTON_DPAD_LEFT] = SDLK_LEFT,  [SDL_CONTROLLER_BUTTON_DPAD_RIGHT] = SDLK_RIGHT};
+        [SDL_CONTROLLER_BUTTON_A] = SDLK_SPACE,
+        [SDL_CONTROLLER_BUTTON_B] = SDLK_p,
+        [SDL_CONTROLLER_BUTTON_X] = SDLK_F2,
+        [SDL_CONTROLLER_BUTTON_Y] = SDLK_F1,
+        [SDL_CONTROLLER_BUTTON_START] = SDLK_TAB,
+        [SDL_CONTROLLER_BUTTON_BACK] = SDLK_g,
+        [SDL_CONTROLLER_BUTTON_DPAD_UP] = SDLK_UP,
+        [SDL_CONTROLLER_BUTTON_DPAD_DOWN] = SDLK_DOWN,
+        [SDL_CONTROLLER_BUTTON_DPAD_LEFT] = SDLK_LEFT,
+        [SDL_CONTROLLER_BUTTON_DPAD_RIGHT] = SDLK_RIGHT};
     if (button == SDL_CONTROLLER_BUTTON_LEFTSHOULDER) masu_fly_faster(&v->fly, -1.0);
     if (button == SDL_CONTROLLER_BUTTON_RIGHTSHOULDER) masu_fly_faster(&v->fly, 1.0);
     if (button >= SDL_CONTROLLER_BUTTON_MAX || !keys[button]) return;

@@ -117,7 +117,8 @@ bool masu_look_apply(masu_viewer *v, masu_renderer *m, masu_frame_desc *frame) {
         masu_model model = masu_model_at(m, i);
         masu_model_state state;
         if (masu_model_get(m, model, &state, NULL)) continue;
-        if (!state.shown != l->hidden[i]) good = !masu_model_show(m, model, !l->hidden[i], &v->detail);
+        if (!state.shown != l->hidden[i])
+            good = !masu_model_show(m, model, !l->hidden[i], &v->detail);
         good = good && pose(m, model, &l->clips[i], &v->detail);
     }
     return good;

@@ -21,7 +21,8 @@ static const masu_option rows[] = {
     MASU_TEXT(masu_viewer_options, bake, "bake", "COMMAND",
               "shell command of the baker, run as COMMAND FILE -o OUT.masu\n"
               "(default: masu-bake in the folder of this program)"),
-    MASU_TEXT(masu_viewer_options, gallery, "gallery", "DIR", "scenes of the start page, as pictures"),
+    MASU_TEXT(masu_viewer_options, gallery, "gallery", "DIR",
+              "scenes of the start page, as pictures"),
     MASU_TEXT(masu_viewer_options, cache, "cache", "DIR",
               "folder of these pictures (default: one in TMPDIR)"),
     MASU_HEADING("Window"),
@@ -98,7 +99,8 @@ static int view(const masu_viewer_options *o) {
     masu_script script = {0};
     masu_viewer_catch_signals();
     int code = describe(o, v);
-    bool read = code || !o->script || masu_script_read(o->script, &script, v->error, sizeof v->error);
+    bool read =
+        code || !o->script || masu_script_read(o->script, &script, v->error, sizeof v->error);
     if (!code && read && masu_viewer_open(v)) code = masu_viewer_run(v, &script);
     else if (!code) code = masu_cli_error("%s", v->error);
     masu_script_free(&script);
@@ -118,7 +120,8 @@ static int view(const masu_viewer_options *o) {
 }
 
 static int run(masu_cli *cli) {
-    masu_viewer_options o = {.size = {1280, 720}, .target_ms = 16.67, .host.message = print_message};
+    masu_viewer_options o = {
+        .size = {1280, 720}, .target_ms = 16.67, .host.message = print_message};
     masu_given given = {.most = 1, .excess = "expected one file"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
@@ -140,15 +143,18 @@ int main(int argc, char **argv) {
         .arguments = "[FILE] [options]",
         .summary = "show a scene in a window",
         .details =
-            "FILE is a baked scene (.masu), a scene description (.json), an SDF (.sdf) or a model (.glb, .gltf,\n"
-            ".obj, ...); all but the first are baked, and baked again when they or files that they name change.\n"
+            "FILE is a baked scene (.masu), a scene description (.json), an SDF (.sdf) or a model "
+            "(.glb, .gltf,\n"
+            ".obj, ...); all but the first are baked, and baked again when they or files that they "
+            "name change.\n"
             "Without it the start page opens. A file that is dropped on the window is opened.\n\n"
             "Keys:\n"
             "  W A S D, Q E          move the camera; Shift: faster; mouse wheel: speed\n"
             "  right mouse button    turn the camera\n"
             "  P, Space              camera path on, off; pause\n"
             "  Left, Right, Home     time backward, forward, 0; Shift: larger steps\n"
-            "  Tab or M              panels: arrow keys move, Space changes, Enter types a value, Esc ends\n"
+            "  Tab or M              panels: arrow keys move, Space changes, Enter types a value, "
+            "Esc ends\n"
             "  F4                    start page\n"
             "  F5 to F8, F10         panels: scene, light, quality, camera; capture\n"
             "  F9, F12               video on, off; screenshot\n"

@@ -23,7 +23,8 @@ void masu_pick_click(masu_viewer *v, int x, int y) {
 
 void masu_pick_ask(masu_viewer *v, masu_frame_desc *frame) {
     /* The window may have shrunk since the click. */
-    if (v->picked.x >= v->a.target.width || v->picked.y >= v->a.target.height) v->picked.asked = false;
+    if (v->picked.x >= v->a.target.width || v->picked.y >= v->a.target.height)
+        v->picked.asked = false;
     frame->pick = v->picked.asked;
     frame->pick_x = v->picked.x;
     frame->pick_y = v->picked.y;
@@ -32,7 +33,8 @@ void masu_pick_ask(masu_viewer *v, masu_frame_desc *frame) {
 void masu_pick_asked(masu_viewer *v, uint32_t slot) {
     masu_frame_view view;
     v->picked.of_slot[slot] = v->picked.asked;
-    if (v->picked.asked && !masu_frame_view_of(v->a.m, &view, NULL)) v->picked.near_distance = (double)view.near_distance;
+    if (v->picked.asked && !masu_frame_view_of(v->a.m, &view, NULL))
+        v->picked.near_distance = (double)view.near_distance;
     v->picked.asked = false;
 }
 
@@ -66,7 +68,8 @@ void masu_pick_take(masu_viewer *v, uint32_t slot) {
     name_it(v, &p, name, sizeof name);
     if (p.depth > 0.0f)
         snprintf(v->picked.text, sizeof v->picked.text, "%s, depth %.3f m, at %.3f %.3f %.3f", name,
-                 v->picked.near_distance / (double)p.depth, p.position[0], p.position[1], p.position[2]);
+                 v->picked.near_distance / (double)p.depth, p.position[0], p.position[1],
+                 p.position[2]);
     else
         snprintf(v->picked.text, sizeof v->picked.text, "%s", name);
     masu_cli_plain(v->picked.text);
@@ -81,5 +84,6 @@ void masu_pick_draw(masu_viewer *v) {
     float x = (float)v->picked.at[0], y = (float)v->picked.at[1], h = masu_ui_line_height();
     masu_ui_fill(x - h / 2, y, h, 1.0f, 0xFFFFFF, 1.0f);
     masu_ui_fill(x, y - h / 2, 1.0f, h, 0xFFFFFF, 1.0f);
-    masu_ui_label(x + h, y < 3.0f * h ? y + h : y - 2.5f * h, 0.0f, 0.0f, MASU_INK_GOOD, v->picked.text);
+    masu_ui_label(x + h, y < 3.0f * h ? y + h : y - 2.5f * h, 0.0f, 0.0f, MASU_INK_GOOD,
+                  v->picked.text);
 }

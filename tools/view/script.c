@@ -32,8 +32,9 @@ typedef enum masu_act {
     ACT_QUIT
 } masu_act;
 
-static const char *const act_names[] = {"key",    "down",     "up",      "wheel",      "mouse", "button", "click",
-                                        "resize", "minimise", "restore", "screenshot", "drop",  "wait",   "run",   "lose",       "quit"};
+static const char *const act_names[] = {
+    "key",      "down",    "up",         "wheel", "mouse", "button", "click", "resize",
+    "minimise", "restore", "screenshot", "drop",  "wait",  "run",    "lose",  "quit"};
 enum { ACTS = sizeof act_names / sizeof *act_names };
 
 typedef struct masu_script_line {
@@ -77,8 +78,8 @@ static bool read_text(masu_script_line *line) {
         return !strcmp(line->text, "left down") || !strcmp(line->text, "left up") ||
                !strcmp(line->text, "right down") || !strcmp(line->text, "right up");
     case ACT_RESIZE:
-        return sscanf(line->text, "%dx%d %c", &line->x, &line->y, &end) == 2 && line->x >= 1 && line->y >= 1 &&
-               line->x <= 16384 && line->y <= 16384;
+        return sscanf(line->text, "%dx%d %c", &line->x, &line->y, &end) == 2 && line->x >= 1 &&
+               line->y >= 1 && line->x <= 16384 && line->y <= 16384;
     case ACT_SCREENSHOT: return *line->text && masu_file_named(line->text, ".png", NULL, 0);
     case ACT_DROP:
     case ACT_RUN: return *line->text != '\0';
@@ -93,7 +94,8 @@ static bool read_line(char *text, masu_script_line *line, const char **wrong) {
     unsigned long long frame;
     memset(line, 0, sizeof *line);
     *wrong = "expected 'frame N ACTION'";
-    if (sscanf(text, "frame %llu %15s%n", &frame, word, &used) != 2 || strchr(text, '-') == text + 6)
+    if (sscanf(text, "frame %llu %15s%n", &frame, word, &used) != 2 ||
+        strchr(text, '-') == text + 6)
         return false;
     line->frame = frame;
     line->text = text + used + strspn(text + used, " \t");
@@ -174,7 +176,9 @@ static void push_key(const masu_viewer *v, const masu_script_line *l, bool down)
 }
 
 static void push_window(const masu_viewer *v, uint8_t what) {
-    SDL_Event e = {.window = {.type = SDL_WINDOWEVENT, .windowID = SDL_GetWindowID(v->window.sdl), .event = what}};
+    SDL_Event e = {.window = {.type = SDL_WINDOWEVENT,
+                              .windowID = SDL_GetWindowID(v->window.sdl),
+                              .event = what}};
     SDL_PushEvent(&e);
 }
 

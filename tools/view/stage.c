@@ -73,8 +73,8 @@ static bool fit_target(masu_stage *s, VkExtent2D output, char *error, size_t siz
     if (s->target.image && s->target.width == output.width && s->target.height == output.height)
         return true;
     masu_headless_target_destroy(s->host, &s->target);
-    return masu_headless_target_create(s->host, output.width, output.height, VK_FORMAT_R8G8B8A8_UNORM,
-                                       true, &s->target, error, size);
+    return masu_headless_target_create(s->host, output.width, output.height,
+                                       VK_FORMAT_R8G8B8A8_UNORM, true, &s->target, error, size);
 }
 
 static void point_to_target(masu_stage *s, masu_desc *d) {
@@ -138,9 +138,11 @@ bool masu_stage_resize(masu_stage *s, VkExtent2D output, char *error, size_t siz
     }
     /* The old target is destroyed when nothing refers to it. */
     memset(&s->target, 0, sizeof s->target);
-    bool good = masu_headless_target_create(s->host, output.width, output.height, VK_FORMAT_R8G8B8A8_UNORM,
-                                            true, &s->target, error, size);
-    masu_targets targets = {.images = &s->target.image, .views = &s->target.view, .count = 1, .storage = 1};
+    bool good =
+        masu_headless_target_create(s->host, output.width, output.height, VK_FORMAT_R8G8B8A8_UNORM,
+                                    true, &s->target, error, size);
+    masu_targets targets = {
+        .images = &s->target.image, .views = &s->target.view, .count = 1, .storage = 1};
     if (good && masu_resize(s->m, output, &targets, NULL, &s->detail)) {
         good = said(s, error, size);
         masu_headless_target_destroy(s->host, &s->target);

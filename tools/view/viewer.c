@@ -48,7 +48,8 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
     uint8_t *bytes = NULL;
     size_t count = 0;
     masu_detail detail = {0};
-    if (!masu_file_read(path, SCENE_BYTES_MAX, &bytes, &count, v->error, sizeof v->error)) return false;
+    if (!masu_file_read(path, SCENE_BYTES_MAX, &bytes, &count, v->error, sizeof v->error))
+        return false;
     if (masu_scene_bind(bytes, count, scene, &detail)) {
         snprintf(v->error, sizeof v->error, "%s: %s%s", path, detail.text,
                  masu_file_hint(path, bytes, count, MASU_FILE_BLOB));
@@ -63,7 +64,8 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
 static void place_camera(masu_viewer *v) {
     v->time = v->o->time;
     v->path_end = masu_fly_path_end(v->a.m);
-    masu_camera camera = {.position = {0.0, 1.7, 6.0}, .forward = {0.0f, -0.1f, -1.0f}, .fov_y = 1.0f};
+    masu_camera camera = {
+        .position = {0.0, 1.7, 6.0}, .forward = {0.0f, -0.1f, -1.0f}, .fov_y = 1.0f};
     bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) &&
                masu_camera_at(v->a.m, v->time, &camera, NULL) == MASU_OK;
     masu_fly_from(&v->fly, &camera);
@@ -115,7 +117,8 @@ static void complete(masu_viewer *v, masu_desc *d) {
 }
 
 static bool stage_failed(masu_viewer *v, const masu_stage *s) {
-    bool gone = s->detail.result == MASU_ERROR_DEVICE_LOST || s->detail.vulkan == VK_ERROR_DEVICE_LOST;
+    bool gone =
+        s->detail.result == MASU_ERROR_DEVICE_LOST || s->detail.vulkan == VK_ERROR_DEVICE_LOST;
     if (gone || v->host.lost) v->lost = true;
     return false;
 }
@@ -129,7 +132,8 @@ static bool start_b(masu_viewer *v) {
     memset(&d.governor, 0, sizeof d.governor);
     v->cut = true;
     v->difference.known = false;
-    return masu_stage_start(&v->b, &v->host, &d, v->error, sizeof v->error) || stage_failed(v, &v->b);
+    return masu_stage_start(&v->b, &v->host, &d, v->error, sizeof v->error) ||
+           stage_failed(v, &v->b);
 }
 
 static bool start_a(masu_viewer *v) {
@@ -141,7 +145,8 @@ static bool start_a(masu_viewer *v) {
     v->difference.known = false;
     v->picked.text[0] = '\0';
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++) v->slot_known[i] = false;
-    if (!masu_stage_start(&v->a, &v->host, &d, v->error, sizeof v->error)) return stage_failed(v, &v->a);
+    if (!masu_stage_start(&v->a, &v->host, &d, v->error, sizeof v->error))
+        return stage_failed(v, &v->a);
     masu_plan_of(v->a.m, &v->plan);
     memset(&v->stats, 0, sizeof v->stats);
     if (v->rung >= d.rung_count) v->rung = d.rung_count - 1;
@@ -201,7 +206,9 @@ bool masu_viewer_resize(masu_viewer *v) {
     VkExtent2D now = v->window.extent;
     const masu_headless_target *is = &v->compose.shown;
     if (!now.width || (is->width == now.width && is->height == now.height)) return true;
-    if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error) || !masu_viewer_attach_ui(v)) return false;
+    if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error) ||
+        !masu_viewer_attach_ui(v))
+        return false;
     return !v->blob || (v->a.m ? resize_stages(v, now) : start_a(v));
 }
 
@@ -217,7 +224,8 @@ bool masu_viewer_attach_ui(masu_viewer *v) {
                               .extent = v->window.extent,
                               .flight = MASU_WINDOW_FLIGHT};
     v->gallery.stale = false;
-    return masu_ui_attach(&d, (const uint8_t *const *)v->gallery.pictures, v->gallery.count, v->error, sizeof v->error);
+    return masu_ui_attach(&d, (const uint8_t *const *)v->gallery.pictures, v->gallery.count,
+                          v->error, sizeof v->error);
 }
 
 /* Sets v->want from the command line, or the ladder of the scene. A value equal to the default
@@ -254,7 +262,8 @@ static void begin_scene(masu_viewer *v) {
     v->recorder.records = v->recorder.plays = false;
     place_camera(v);
     masu_look_reset(v);
-    snprintf(title, sizeof title, "masu: %.290s", *v->baker.source ? v->baker.source : v->baker.blob);
+    snprintf(title, sizeof title, "masu: %.290s",
+             *v->baker.source ? v->baker.source : v->baker.blob);
     SDL_SetWindowTitle(v->window.sdl, title);
 }
 
@@ -301,7 +310,8 @@ bool masu_viewer_load(masu_viewer *v, const char *path, bool fresh) {
 /* ---- Device ---------------------------------------------------------------------------------- */
 
 static bool open_device(masu_viewer *v) {
-    if (!masu_window_attach(&v->window, &v->o->host, &v->host, v->error, sizeof v->error)) return false;
+    if (!masu_window_attach(&v->window, &v->o->host, &v->host, v->error, sizeof v->error))
+        return false;
     VkPipelineCacheCreateInfo cache = {.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
     VkResult r = vkCreatePipelineCache(v->host.device, &cache, NULL, &v->cache);
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT && !r; i++) {
@@ -310,7 +320,8 @@ static bool open_device(masu_viewer *v) {
         v->pending[i] = false;
     }
     if (r) return masu_headless_fail(v->error, sizeof v->error, "vkCreateFence", r);
-    if (!masu_compose_open(&v->compose, &v->host, v->cache, v->error, sizeof v->error)) return false;
+    if (!masu_compose_open(&v->compose, &v->host, v->cache, v->error, sizeof v->error))
+        return false;
     /* A window that opens minimised has no size yet. */
     for (int i = 0; i < 100; i++) {
         if (!masu_viewer_resize(v)) return false;
@@ -359,11 +370,14 @@ bool masu_viewer_open(masu_viewer *v) {
         return false;
     }
     if (v->blob && v->o->rung >= v->want.rung_count) {
-        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u", v->want.rung_count - 1, v->o->rung);
+        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u",
+                 v->want.rung_count - 1, v->o->rung);
         return false;
     }
     v->rung = v->o->rung;
-    if (!masu_window_open(&v->window, "masu", v->o->size, v->error, sizeof v->error) || !open_device(v)) return false;
+    if (!masu_window_open(&v->window, "masu", v->o->size, v->error, sizeof v->error) ||
+        !open_device(v))
+        return false;
     if (v->a.m) begin_scene(v);
     return true;
 }

@@ -121,7 +121,14 @@ typedef struct masu_panels {
     uint32_t tab;                /* MASU_TAB_* */
     bool select;                 /* show `tab` in the next frame */
 } masu_panels;
-enum { MASU_TAB_SCENE, MASU_TAB_LIGHT, MASU_TAB_QUALITY, MASU_TAB_CAMERA, MASU_TAB_CAPTURE, MASU_TABS };
+enum {
+    MASU_TAB_SCENE,
+    MASU_TAB_LIGHT,
+    MASU_TAB_QUALITY,
+    MASU_TAB_CAMERA,
+    MASU_TAB_CAPTURE,
+    MASU_TABS
+};
 
 #define MASU_GALLERY_MAX 64u
 
@@ -248,7 +255,8 @@ bool masu_viewer_attach_ui(masu_viewer *v);
 bool masu_viewer_recover(masu_viewer *v);
 
 /* Shows a line in the overlay for a while. */
-void masu_viewer_note(masu_viewer *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void masu_viewer_note(masu_viewer *v, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void masu_viewer_setting(const masu_viewer *v, const masu_rung *rung, char out[MASU_SETTING_ID]);
 /* The current camera. */
 void masu_viewer_camera(const masu_viewer *v, masu_camera *out);

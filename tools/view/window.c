@@ -15,8 +15,8 @@ bool masu_window_open(masu_window *w, const char *title, VkExtent2D size, char *
         return false;
     }
     (void)SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER); /* optional: keys and mouse are enough */
-    w->sdl = SDL_CreateWindow(title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, (int)size.width,
-                              (int)size.height,
+    w->sdl = SDL_CreateWindow(title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
+                              (int)size.width, (int)size.height,
                               SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
     if (w->sdl) return true;
     snprintf(error, n, "no window: %s", SDL_GetError());
@@ -47,8 +47,8 @@ static void surface_close(void *user, VkInstance instance) {
     w->surface = VK_NULL_HANDLE;
 }
 
-bool masu_window_attach(masu_window *w, const masu_headless_desc *given, masu_headless *host, char *error,
-                        size_t size) {
+bool masu_window_attach(masu_window *w, const masu_headless_desc *given, masu_headless *host,
+                        char *error, size_t size) {
     const char *names[8];
     unsigned count = sizeof names / sizeof *names;
     if (!SDL_Vulkan_GetInstanceExtensions(w->sdl, &count, names)) {

@@ -33,13 +33,14 @@ typedef struct masu_window {
 } masu_window;
 
 /* Opens the window. */
-bool masu_window_open(masu_window *w, const char *title, VkExtent2D size, char *error, size_t size_);
+bool masu_window_open(masu_window *w, const char *title, VkExtent2D size, char *error,
+                      size_t size_);
 void masu_window_close(masu_window *w);
 
 /* Opens a device that can present to the window. masu_headless_close destroys the surface; call
  * masu_window_detach first, for swapchain and semaphores. */
-bool masu_window_attach(masu_window *w, const masu_headless_desc *desc, masu_headless *host, char *error,
-                        size_t size);
+bool masu_window_attach(masu_window *w, const masu_headless_desc *desc, masu_headless *host,
+                        char *error, size_t size);
 void masu_window_detach(masu_window *w);
 
 /* Creates the swapchain at the window's current size, from the old one if there is one. The device

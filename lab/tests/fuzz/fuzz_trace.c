@@ -20,7 +20,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     EXPECT(trace.frames >= 2 && trace.frames <= SIM_FRAMES_MOST);
     EXPECT(trace.budget_ms > 0.0 && trace.budget_ms < 1e5);
     for (uint32_t i = 0; i < trace.columns; i++)
-        EXPECT(trace.scale[i] > 0.0 && trace.scale[i] <= 1.0 && (!i || trace.scale[i] < trace.scale[i - 1]));
+        EXPECT(trace.scale[i] > 0.0 && trace.scale[i] <= 1.0 &&
+               (!i || trace.scale[i] < trace.scale[i - 1]));
     sim_model model = sim_of_trace(&trace);
     sim_result r = sim_run(&model, &sim_masu, 1, NULL, NULL);
     EXPECT(!r.invalid && r.mean_scale > 0.0);

@@ -87,9 +87,13 @@ static void many_plain_samples_are_the_truth(void **state) {
     (void)state;
     enum { MOST = 4 };
     static const char *const settings[] = {"base", "scale=0.4", NULL};
-    run(
-        (masu_baseline_desc){
-            .time = 1.0, .positions = 16, .rays = 16, .frames = 4, .step = MASU_MOTION_STEP, .most = MOST, .curve = true},
+    run((masu_baseline_desc){.time = 1.0,
+                             .positions = 16,
+                             .rays = 16,
+                             .frames = 4,
+                             .step = MASU_MOTION_STEP,
+                             .most = MOST,
+                             .curve = true},
         "mirrors", settings);
     const masu_baseline_entry *plain = &baseline.entries[0];
     for (uint32_t k = 1; k <= MOST; k *= 2)
@@ -109,7 +113,8 @@ static void many_plain_samples_are_the_truth(void **state) {
     /* An image of fewer pixels has a larger error than a full one, and does not need more
      * samples. */
     for (int m = 0; m < MASU_BASELINE_METRICS; m++) {
-        const masu_baseline_entry *base = &baseline.entries[baseline.plain_count], *small = base + 1;
+        const masu_baseline_entry *base = &baseline.entries[baseline.plain_count],
+                                  *small = base + 1;
         assert_true(small->errors.of[m] > base->errors.of[m]);
         assert_true(small->samples[m] &&
                     (!base->samples[m] || small->samples[m] <= base->samples[m]));
@@ -123,12 +128,14 @@ static void steps_are_those_between_frames(void **state) {
     static const double steps[] = {0.0, 0.5};
     double with[2];
     for (int i = 0; i < 2; i++) {
-        run((masu_baseline_desc){.time = 1.0, .positions = 16, .rays = 4, .frames = 24, .most = 1, .step = steps[i]},
+        run(
+            (masu_baseline_desc){
+                .time = 1.0, .positions = 16, .rays = 4, .frames = 24, .most = 1, .step = steps[i]},
             "engine", settings);
         const masu_baseline_entry *e = &baseline.entries[baseline.plain_count];
         with[i] = e[1].errors.of[MASU_BASELINE_RMSE] / e[0].errors.of[MASU_BASELINE_RMSE];
-        print_message("  %g s: RMSE %.4f, with history %.4f\n", steps[i], e[0].errors.of[MASU_BASELINE_RMSE],
-                      e[1].errors.of[MASU_BASELINE_RMSE]);
+        print_message("  %g s: RMSE %.4f, with history %.4f\n", steps[i],
+                      e[0].errors.of[MASU_BASELINE_RMSE], e[1].errors.of[MASU_BASELINE_RMSE]);
     }
     assert_true(with[0] < 0.7 && with[1] > 1.2 * with[0]);
 }
@@ -165,9 +172,10 @@ static void bad_input_is_one_line(void **state) {
 
 static void rows_are_written(void **state) {
     (void)state;
-    int code = cli_run("study baseline %s --size 32x18 --positions 2 --reference 2 --frames 2 --runs 1 "
-                       "--most 1 --rung scale=0.5 --csv %s/w.csv --validate",
-                       scene_path("test_truth"), scratch);
+    int code =
+        cli_run("study baseline %s --size 32x18 --positions 2 --reference 2 --frames 2 --runs 1 "
+                "--most 1 --rung scale=0.5 --csv %s/w.csv --validate",
+                scene_path("test_truth"), scratch);
     if (code) fail_msg("exit code %d, %s", code, cli_err);
     char *text = read_file(in_scratch("w.csv"), NULL);
     uint32_t rows = 0, columns = 0, n = 1;

@@ -19,10 +19,10 @@
 #define LADDER_HEAD                                                                                \
     "{\"scene\": \"a.masu\", \"driver\": \"D\", \"width\": 32, \"height\": 24, \"clock\": \"wall\", "   \
     "\"error\": \"flip\", \"rungs\": ["
-static const char ladder[] =
-    LADDER_HEAD "{\"setting\": \"all\", \"ratio\": 1.0, \"flip\": 0.1, \"knobs\": {\"scale\": 1}},\n"
-                "{\"setting\": \"half\", \"ratio\": 0.5, \"flip\": 0.2, "
-                "\"knobs\": {\"scale\": 0.5, \"specular\": \"off\"}}]}";
+static const char ladder[] = LADDER_HEAD
+    "{\"setting\": \"all\", \"ratio\": 1.0, \"flip\": 0.1, \"knobs\": {\"scale\": 1}},\n"
+    "{\"setting\": \"half\", \"ratio\": 0.5, \"flip\": 0.2, "
+    "\"knobs\": {\"scale\": 0.5, \"specular\": \"off\"}}]}";
 
 static void model_of(const char *scene, const char *path, uint32_t width, uint32_t height,
                      uint32_t drawn_width, uint32_t drawn_height, masu_model_sheet *out) {
@@ -233,7 +233,8 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     assert_null(strstr(text, "instructions by"));
     assert_int_equal(cli_run("model"), 2);
     /* RADV compiles for raven without the GPU. Other GPUs represent no class. */
-    snprintf(arguments, sizeof arguments, "%s --size 64x48 --drawn 64x48 --isa raven --csv %s/i.csv",
+    snprintf(arguments, sizeof arguments,
+             "%s --size 64x48 --drawn 64x48 --isa raven --csv %s/i.csv",
              scene_path("test_sphere_mesh"), scratch);
     int code = cli_run("model %s", arguments);
     take_text("err", text, sizeof text);
@@ -247,7 +248,8 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     assert_non_null(end);
     while (end[-1] != ',') end--;
     double per_pixel = strtod(end, NULL) / (64 * 48);
-    if (!(per_pixel > 20 && per_pixel < 500)) fail_msg("%g instructions of tonemap for each pixel", per_pixel);
+    if (!(per_pixel > 20 && per_pixel < 500))
+        fail_msg("%g instructions of tonemap for each pixel", per_pixel);
     snprintf(arguments, sizeof arguments, "%s --isa navi14", scene_path("test_sphere_mesh"));
     assert_int_equal(cli_run("model %s", arguments), 2);
     take_text("err", text, sizeof text);

@@ -39,9 +39,9 @@ static int bench(const char *arguments) { return cli_run("study march %s --quiet
 static int make_truth(void **state) {
     if (make_scratch(state)) return 1;
     write_text("sphere.c", sphere_text);
-    if (shell(
-            "%s/bin/masu-bake tests/scenes/test_sphere_sdf.json -o %s/test_sphere_sdf.masu --variants --quiet",
-            build_dir(), scratch))
+    if (shell("%s/bin/masu-bake tests/scenes/test_sphere_sdf.json -o %s/test_sphere_sdf.masu "
+              "--variants --quiet",
+              build_dir(), scratch))
         return 1;
     return shell("%s -shared -fPIC -O2 -o %s/sphere.so %s/sphere.c -lm", c_compiler(), scratch,
                  scratch);

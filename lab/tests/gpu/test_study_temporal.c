@@ -43,8 +43,9 @@ static void a_past_brings_a_picture_nearer_to_the_truth(void **state) {
     assert_int_equal(past.row_count, 2 * MASU_PAST_WAYS);
     for (uint32_t i = 0; i < past.row_count; i++) {
         const masu_past_row *r = &past.rows[i];
-        print_message("  %g %s: %.4f %.4f %.4f, flicker %.3f %.3f\n", r->scale, masu_past_ways[r->way],
-                      r->flip[0], r->flip[1], r->flip[2], r->flicker[0], r->flicker[1]);
+        print_message("  %g %s: %.4f %.4f %.4f, flicker %.3f %.3f\n", r->scale,
+                      masu_past_ways[r->way], r->flip[0], r->flip[1], r->flip[2], r->flicker[0],
+                      r->flicker[1]);
         assert_int_equal(r->render_width, (uint32_t)(r->scale * WIDTH));
         assert_int_equal(r->render_height, (uint32_t)(r->scale * HEIGHT));
     }
@@ -76,12 +77,17 @@ static void the_table_is_told_as_it_is_asked_for(void **state) {
     (void)state;
     static const struct {
         const char *arguments, *says;
-    } mistakes[] = {{"%s --only ours", "ours"}, {"%s --scales 0.5,2", "0.5,2"}, {"", "no scene"},
-                    {"%s --fast-frames 0", "--fast-frames"}, {"%s --frames 1", "--frames"}, {"%s --starts 0", "--starts"}};
+    } mistakes[] = {{"%s --only ours", "ours"},
+                    {"%s --scales 0.5,2", "0.5,2"},
+                    {"", "no scene"},
+                    {"%s --fast-frames 0", "--fast-frames"},
+                    {"%s --frames 1", "--frames"},
+                    {"%s --starts 0", "--starts"}};
     const char *good = scene_path("test_town");
-    int code = cli_run("study temporal %s --size 32x24 --positions 2 --reference 2 --frames 2 --fast-frames 2 "
-                       "--scales 0.5 --only temporal --quiet --csv %s/rows.csv",
-                       good, scratch);
+    int code = cli_run(
+        "study temporal %s --size 32x24 --positions 2 --reference 2 --frames 2 --fast-frames 2 "
+        "--scales 0.5 --only temporal --quiet --csv %s/rows.csv",
+        good, scratch);
     if (code) fail_msg("exit code %d, %s", code, cli_err);
     char *csv = read_file(in_scratch("rows.csv"), NULL);
     assert_non_null(strstr(csv, "scene,width,height,"));

@@ -97,24 +97,27 @@ static masu_spirv_cost straight(const uint32_t *words, size_t bytes) {
  * tested. */
 static void what_constants_leave_out_is_not_counted(void **state) {
     (void)state;
-    static const char source[] =
-        "#version 440\n"
-        "layout(constant_id = 3) const bool on = true;\n"
-        "layout(constant_id = 5) const uint kind = 2;\n"
-        "layout(set = 0, binding = 0) buffer B { vec4 a, b; uint n; };\n"
-        "vec4 twice(vec4 v) { return v + v; }\n" /* 4 */
-        "void main() {\n"
-        "    a += b;\n"                                                                      /* 4 */
-        "    if (on) { a = a * b + b; }\n"                                                   /* 8 */
-        "    if (kind == 1u) { a = sqrt(a); } else if (kind + 1u > 2u) { a = twice(a * b); }\n" /* 4; 8 */
-        "    if (!on && n > 3u) { a.x = exp2(a.x); }\n" /* 1, 1 to test; a PHI */
-        "    switch (kind) { case 7u: a *= a; break; default: a.x *= 2.0; }\n"               /* 4; 1 */
-        "    for (uint i = 0u; i < 4u; i++) { b += 1.0; if (kind == 9u) { b *= 3.0; } }\n"   /* 4, and the loop's; 4 */
-        "}\n";
+    static const char
+        source[] = "#version 440\n"
+                   "layout(constant_id = 3) const bool on = true;\n"
+                   "layout(constant_id = 5) const uint kind = 2;\n"
+                   "layout(set = 0, binding = 0) buffer B { vec4 a, b; uint n; };\n"
+                   "vec4 twice(vec4 v) { return v + v; }\n" /* 4 */
+                   "void main() {\n"
+                   "    a += b;\n"                    /* 4 */
+                   "    if (on) { a = a * b + b; }\n" /* 8 */
+                   "    if (kind == 1u) { a = sqrt(a); } else if (kind + 1u > 2u) { a = twice(a * "
+                   "b); }\n"                                       /* 4; 8 */
+                   "    if (!on && n > 3u) { a.x = exp2(a.x); }\n" /* 1, 1 to test; a PHI */
+                   "    switch (kind) { case 7u: a *= a; break; default: a.x *= 2.0; }\n" /* 4; 1 */
+                   "    for (uint i = 0u; i < 4u; i++) { b += 1.0; if (kind == 9u) { b *= 3.0; } "
+                   "}\n" /* 4, and the loop's; 4 */
+                   "}\n";
     static const struct {
         uint32_t on, kind, counts; /* added to the common ones */
-    } cases[] = {{1, 2, 4 + 8 + 8 + 1 + 4},     {0, 2, 4 + 8 + 1 + 4 + 1 + 1}, {0, 1, 4 + 4 + 1 + 4 + 1 + 1},
-                 {1, 1, 4 + 8 + 4 + 1 + 4},     {1, 7, 4 + 8 + 8 + 4 + 4},     {1, 9, 4 + 8 + 8 + 1 + 4 + 4},
+    } cases[] = {{1, 2, 4 + 8 + 8 + 1 + 4},     {0, 2, 4 + 8 + 1 + 4 + 1 + 1},
+                 {0, 1, 4 + 4 + 1 + 4 + 1 + 1}, {1, 1, 4 + 8 + 4 + 1 + 4},
+                 {1, 7, 4 + 8 + 8 + 4 + 4},     {1, 9, 4 + 8 + 8 + 1 + 4 + 4},
                  {1, 0, 4 + 8 + 1 + 4}};
     spirv_module m;
     assert_true(spirv_compile(write_text("constants.comp", source), "-O", &m) ||
@@ -127,7 +130,8 @@ static void what_constants_leave_out_is_not_counted(void **state) {
         uint32_t plain = masu_spirv_cost_reached(&m, &special).plain;
         if (!k) base = plain - cases[k].counts;
         if (plain != base + cases[k].counts)
-            fail_msg("%u, %u: %u instead of %u", cases[k].on, cases[k].kind, plain, base + cases[k].counts);
+            fail_msg("%u, %u: %u instead of %u", cases[k].on, cases[k].kind, plain,
+                     base + cases[k].counts);
         assert_true(plain < everything);
     }
     /* Without values from the host the module's own values hold. */
@@ -142,10 +146,14 @@ static void what_constants_leave_out_is_not_counted(void **state) {
  * 175 per pixel; it computes two, from 24 numbers. */
 static void easu_costs_about_what_was_counted_by_hand(void **state) {
     (void)state;
-    masu_spirv_cost easu = straight(masu_spv_easu_bytes_exact_comp, sizeof masu_spv_easu_bytes_exact_comp);
-    masu_spirv_cost rcas = straight(masu_spv_rcas_bytes_exact_comp, sizeof masu_spv_rcas_bytes_exact_comp);
-    masu_spirv_cost quick_easu = straight(masu_spv_easu_bytes_comp, sizeof masu_spv_easu_bytes_comp);
-    masu_spirv_cost quick_rcas = straight(masu_spv_rcas_bytes_comp, sizeof masu_spv_rcas_bytes_comp);
+    masu_spirv_cost easu =
+        straight(masu_spv_easu_bytes_exact_comp, sizeof masu_spv_easu_bytes_exact_comp);
+    masu_spirv_cost rcas =
+        straight(masu_spv_rcas_bytes_exact_comp, sizeof masu_spv_rcas_bytes_exact_comp);
+    masu_spirv_cost quick_easu =
+        straight(masu_spv_easu_bytes_comp, sizeof masu_spv_easu_bytes_comp);
+    masu_spirv_cost quick_rcas =
+        straight(masu_spv_rcas_bytes_comp, sizeof masu_spv_rcas_bytes_comp);
     masu_spirv_cost bilinear = straight(masu_spv_bilinear_comp, sizeof masu_spv_bilinear_comp);
     assert_in_range(easu.plain, 794 + 14 * 36 - 20, 794 + 14 * 36 + 20);
     assert_in_range(rcas.plain, 2 * 175 + 14 * 24 - 40, 2 * 175 + 14 * 24 + 40);
@@ -284,8 +292,8 @@ static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     assert_near(rcas->bytes, 4.0 * (0.25 * P + P));
 }
 
-static void add_row(masu_isa_rows *rows, const char *pipeline, const char *stage, uint32_t lanes, double instructions,
-                    double waves, double cycles, double latency) {
+static void add_row(masu_isa_rows *rows, const char *pipeline, const char *stage, uint32_t lanes,
+                    double instructions, double waves, double cycles, double latency) {
     masu_isa_row *r = &rows->row[rows->count++];
     *r = (masu_isa_row){.lanes = lanes};
     snprintf(r->pipeline, sizeof r->pipeline, "%s", pipeline);
@@ -346,7 +354,8 @@ static void the_sheet_counts_the_compilers_instructions_where_it_was_asked(void 
                                                             * invocation */
     issued[0].pass[MASU_PASS_RCAS].waits = 1.0;
     masu_model_make(&count, issued, &m);
-    const masu_model_row *easu = &m.rungs[0].rows[MASU_PASS_EASU], *rcas = &m.rungs[0].rows[MASU_PASS_RCAS];
+    const masu_model_row *easu = &m.rungs[0].rows[MASU_PASS_EASU],
+                         *rcas = &m.rungs[0].rows[MASU_PASS_RCAS];
     assert_near(easu->issued[0], 800.0 * P * 1.5);
     assert_near(rcas->issued[0], 90.0 * P);
     assert_near(m.rungs[0].sum.issued[0], 1290.0 * P);

@@ -264,13 +264,25 @@ static void local_lights_have_a_size(void **state) {
     (void)state;
     static const double high[3][2] = {{0, 1.9635}, {1, 1.4050}, {4, .1756}};
     static const double square[3][2] = {{0, 6.5682}, {1, 4.4310}, {2, 1.4729}};
-    ref_light lights[] = {
-        {.type = MASU_LIGHT_SPHERE, .color = ref_splat(10), .radius = .5, .position = ref_v(0, 2, 0)},
-        {.type = MASU_LIGHT_POINT, .color = ref_splat(2.5), .radius = .5, .position = ref_v(0, 2, 0)},
-        {.type = MASU_LIGHT_CAPSULE, .color = ref_splat(10), .radius = .5, .position = ref_v(0, 2, 0),
-         .direction = ref_v(1e-4, 0, 0)},
-        {.type = MASU_LIGHT_RECTANGLE, .color = ref_splat(10), .radius = .01, .position = ref_v(0, 1.5, 0),
-         .direction = ref_v(1, 0, 0), .half_axis = ref_v(0, 0, .5)}};
+    ref_light lights[] = {{.type = MASU_LIGHT_SPHERE,
+                           .color = ref_splat(10),
+                           .radius = .5,
+                           .position = ref_v(0, 2, 0)},
+                          {.type = MASU_LIGHT_POINT,
+                           .color = ref_splat(2.5),
+                           .radius = .5,
+                           .position = ref_v(0, 2, 0)},
+                          {.type = MASU_LIGHT_CAPSULE,
+                           .color = ref_splat(10),
+                           .radius = .5,
+                           .position = ref_v(0, 2, 0),
+                           .direction = ref_v(1e-4, 0, 0)},
+                          {.type = MASU_LIGHT_RECTANGLE,
+                           .color = ref_splat(10),
+                           .radius = .01,
+                           .position = ref_v(0, 1.5, 0),
+                           .direction = ref_v(1, 0, 0),
+                           .half_axis = ref_v(0, 0, .5)}};
     for (int kind = 0; kind < 4; kind++) {
         lights[kind].range = 1e9;
         lights[kind].outer = -1;

@@ -16,7 +16,8 @@ static bool lies_in(const char *folder, const char *path) {
     char *root = realpath(folder, NULL);
     if (!root) return false;
     size_t length = strlen(root);
-    bool inside = strcmp(root, "/") == 0 || (strncmp(path, root, length) == 0 && path[length] == '/');
+    bool inside =
+        strcmp(root, "/") == 0 || (strncmp(path, root, length) == 0 && path[length] == '/');
     free(root);
     return inside;
 }

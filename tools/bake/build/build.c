@@ -67,8 +67,8 @@ static bool load_panorama(const masu_bake_environment *e, masu_bake_panorama *ou
 }
 
 /* Uses a model's camera as the camera key. */
-static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, const masu_bake_content *content,
-                        masu_blob_camera_key *key) {
+static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds,
+                        const masu_bake_content *content, masu_blob_camera_key *key) {
     const masu_bake_camera *camera = masu_bake_find_camera(content, d->look.camera);
     if (!camera) {
         masu_bake_buffer names = {0};
@@ -93,7 +93,8 @@ static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, c
     if (d->look.own_fov_y) d->look.height = 0;
     /* exact at the centre of the scene */
     if (d->look.height > 0 && !masu_bake_box_is_empty(bounds)) {
-        masu_bake_vec3 middle = masu_bake_mad(bounds->low, masu_bake_sub(bounds->high, bounds->low), 0.5);
+        masu_bake_vec3 middle =
+            masu_bake_mad(bounds->low, masu_bake_sub(bounds->high, bounds->low), 0.5);
         ahead = fmax(ahead, masu_bake_dot(masu_bake_sub(middle, at), forward));
     }
     masu_bake_store(at, key->position);
@@ -143,11 +144,14 @@ static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama
 /* Units of a model without a scene are metres unless its file specifies others; few objects are
  * kilometres wide. */
 static void hint_at_units(const masu_bake_description *d, const masu_bake_box *bounds) {
-    if (masu_bake_box_is_empty(bounds) || !d->model_count || !d->models[0].plays || masu_cli_quiet()) return;
+    if (masu_bake_box_is_empty(bounds) || !d->model_count || !d->models[0].plays ||
+        masu_cli_quiet())
+        return;
     masu_bake_vec3 e = masu_bake_sub(bounds->high, bounds->low);
     double longest = fmax(e.x, fmax(e.y, e.z));
     if (longest < LARGE) return;
-    printf("%s: is %.3g m long; if its file is in centimetres or millimetres, use a scene with a \"scale\" of 0.01 or "
+    printf("%s: is %.3g m long; if its file is in centimetres or millimetres, use a scene with a "
+           "\"scale\" of 0.01 or "
            "0.001 (--describe writes one)\n",
            d->models[0].file, longest);
 }

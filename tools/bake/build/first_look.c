@@ -76,8 +76,8 @@ static bool is_flat(const masu_bake_box *box) {
 
 /* The distance is at least the model's depth: otherwise a stick that points at the camera would
  * touch it. */
-static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_box *box, double fov_y,
-                                  masu_bake_vec3 towards) {
+static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_box *box,
+                                  double fov_y, masu_bake_vec3 towards) {
     const masu_bake_vec3 zero = {0, 0, 0};
     axes at = axes_of(towards);
     double share = masu_bake_count(c, MASU_BLOB_CLIPS) ? MOVING_SHARE : FRAME_SHARE;

@@ -39,7 +39,8 @@ static masu_blob_camera_key framing_key(const masu_bake_box *box, double fov_y) 
 static double flatten(double height, masu_blob_camera_key *keys, size_t count) {
     double least = HUGE_VAL;
     for (size_t i = 0; i < count; i++) {
-        masu_bake_vec3 target = masu_bake_v3f(keys[i].target), position = masu_bake_v3f(keys[i].position);
+        masu_bake_vec3 target = masu_bake_v3f(keys[i].target),
+                       position = masu_bake_v3f(keys[i].position);
         masu_bake_vec3 back = masu_bake_sub(position, target);
         double own = masu_bake_length(back), distance = fmax(height / 2 / tan(LENS / 2), own);
         masu_bake_normalize(&back);
@@ -61,16 +62,18 @@ static masu_bake_vec3 direction_of(const masu_blob_camera_key *key) {
     return to;
 }
 
-static void append_between(const masu_blob_camera_key *a, const masu_blob_camera_key *b, int halvings,
-                           masu_bake_buffer *out) {
+static void append_between(const masu_blob_camera_key *a, const masu_blob_camera_key *b,
+                           int halvings, masu_bake_buffer *out) {
     masu_blob_camera_key middle = *a;
-    if (halvings == 0 || masu_bake_length(masu_bake_sub(direction_of(b), direction_of(a))) <= TURN) return;
+    if (halvings == 0 || masu_bake_length(masu_bake_sub(direction_of(b), direction_of(a))) <= TURN)
+        return;
     middle.time = (float)(((double)a->time + (double)b->time) / 2);
     for (int k = 0; k < 3; k++) {
         middle.position[k] = (float)(((double)a->position[k] + (double)b->position[k]) / 2);
         middle.target[k] = (float)(((double)a->target[k] + (double)b->target[k]) / 2);
     }
-    masu_bake_vec3 apart = masu_bake_sub(masu_bake_v3f(middle.position), masu_bake_v3f(middle.target));
+    masu_bake_vec3 apart =
+        masu_bake_sub(masu_bake_v3f(middle.position), masu_bake_v3f(middle.target));
     if (!(middle.time > a->time && middle.time < b->time && masu_bake_length(apart) > 0)) return;
     append_between(a, &middle, halvings - 1, out);
     masu_bake_append(out, &middle, sizeof middle);

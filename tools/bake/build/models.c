@@ -55,8 +55,9 @@ static loaded_model *find_loaded(const model_builder *b, const loaded_model *wan
     for (loaded_model *at = b->loaded; at; at = at->next) {
         bool same = wanted->path ? at->path && strcmp(at->path, wanted->path) == 0
                                  : !at->path && at->shape == wanted->shape;
-        if (same && at->merge == wanted->merge && at->moving == wanted->moving && at->plays == wanted->plays &&
-            at->textures == wanted->textures && strcmp(at->variant ? at->variant : "", wanted->variant ? wanted->variant : "") == 0)
+        if (same && at->merge == wanted->merge && at->moving == wanted->moving &&
+            at->plays == wanted->plays && at->textures == wanted->textures &&
+            strcmp(at->variant ? at->variant : "", wanted->variant ? wanted->variant : "") == 0)
             return at;
     }
     return NULL;
@@ -237,11 +238,13 @@ static void warn_of_namesake(const model_builder *b, const masu_bake_model *mode
     }
 }
 
-static void warn_of_changes(const model_builder *b, const masu_bake_model *model, const loaded_model *from) {
+static void warn_of_changes(const model_builder *b, const masu_bake_model *model,
+                            const loaded_model *from) {
     for (size_t i = 0; i < model->change_count; i++) {
         const masu_bake_override *o = &model->changes[i].value;
         if (!*o->match || masu_bake_override_matches(&from->piece, o)) continue;
-        masu_cli_warn("%s: %s: no material matches \"%s\"", b->description->file, model->where, o->match);
+        masu_cli_warn("%s: %s: no material matches \"%s\"", b->description->file, model->where,
+                      o->match);
     }
 }
 

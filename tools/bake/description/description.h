@@ -51,7 +51,8 @@ typedef enum masu_bake_hides {
 } masu_bake_hides;
 
 typedef struct masu_bake_model {
-    const char *where; /* position in the description, for errors: "models[3]"; "": the whole file */
+    const char
+        *where; /* position in the description, for errors: "models[3]"; "": the whole file */
     const char *file;  /* NULL: procedural */
     uint32_t shape;    /* index into the description's shapes, if there is no file */
     const char *variant; /* of the file's materials, or NULL */

@@ -79,8 +79,12 @@ static bool read_scene(const masu_bake_options *options, masu_bake_description *
 
 static void describe_model(const char *file, const char *variant, masu_bake_description *out) {
     out->models = masu_bake_take(&out->pool, sizeof *out->models);
-    out->models[0] = (masu_bake_model){
-        .where = "", .file = file, .variant = variant, .plays = true, .lights = 1, .placement = masu_bake_identity()};
+    out->models[0] = (masu_bake_model){.where = "",
+                                       .file = file,
+                                       .variant = variant,
+                                       .plays = true,
+                                       .lights = 1,
+                                       .placement = masu_bake_identity()};
     out->model_count = 1;
 }
 

@@ -54,7 +54,8 @@ static bool read_cone(const masu_bake_json *at, masu_blob_light *light) {
     return true;
 }
 
-static bool only_for(const masu_bake_json *at, const char *member, bool allowed, const char *types) {
+static bool only_for(const masu_bake_json *at, const char *member, bool allowed,
+                     const char *types) {
     return allowed || !masu_bake_json_has(at, member) ||
            masu_bake_json_wrong(at, "\"%s\" is only allowed for %s", member, types);
 }
@@ -63,7 +64,8 @@ static bool only_for(const masu_bake_json *at, const char *member, bool allowed,
  * spots. */
 static bool read_shape(const masu_bake_json *at, masu_blob_light *light, double *size) {
     const double most = MASU_BAKE_COORDINATE_MAX;
-    bool capsule = light->type == MASU_LIGHT_CAPSULE, rectangle = light->type == MASU_LIGHT_RECTANGLE;
+    bool capsule = light->type == MASU_LIGHT_CAPSULE,
+         rectangle = light->type == MASU_LIGHT_RECTANGLE;
     bool two_sided = false;
     masu_bake_vec3 axis[2] = {{0, 0, 0}, {0, 0, 0}};
     if (!only_for(at, "half_u", capsule || rectangle, "capsules and rectangles") ||
@@ -118,8 +120,11 @@ static bool read_light(const masu_bake_json *at, masu_bake_reader *r, masu_bake_
     range = masu_bake_area_range(&light);
     if (!masu_bake_json_number(at, "range", 0, 1e9, &range)) return false;
     if (range < 6 * size)
-        return masu_bake_json_wrong(at, "\"range\" is %g m; expected at least 6 times the size from the "
-                                    "centre, %g m", range, 6 * size);
+        return masu_bake_json_wrong(
+            at,
+            "\"range\" is %g m; expected at least 6 times the size from the "
+            "centre, %g m",
+            range, 6 * size);
     masu_bake_store(position, light.position);
     light.range = (float)range;
     double value;

@@ -95,7 +95,8 @@ static bool read_blend(const masu_bake_json *at, masu_bake_override *out) {
     masu_bake_json where = masu_bake_json_member(at, blend ? "blend" : "opacity");
     out->opacity = masu_bake_json_has(at, "opacity");
     out->value.opacity = (float)opacity;
-    if (blend && strcmp(blend, "alpha") != 0 && strcmp(blend, "additive") != 0 && strcmp(blend, "tinted") != 0)
+    if (blend && strcmp(blend, "alpha") != 0 && strcmp(blend, "additive") != 0 &&
+        strcmp(blend, "tinted") != 0)
         return masu_bake_json_wrong(&where, "expected \"alpha\", \"additive\" or \"tinted\"");
     if (out->alpha && out->maps.alpha != MASU_BAKE_ALPHA_BLEND && (blend || opacity < 1))
         return masu_bake_json_wrong(&where, "needs \"alpha\": \"blend\"");
@@ -179,7 +180,8 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
-    double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0, thickness = 0, ior = 1.5;
+    double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0, thickness = 0,
+           ior = 1.5;
     const char *match = NULL, *name = NULL;
     bool single = false, even = false, unlit = false, repeat = false;
     double bias = 0;
@@ -191,9 +193,9 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_number(at, "coat", 0, 1, &coat) ||
         !masu_bake_json_number(at, "coat_roughness", 0, 1, &coat_roughness) ||
         !masu_bake_json_number(at, "thickness", 0, 65504, &thickness) ||
-        !masu_bake_json_number(at, "ior", 1, 1000, &ior) ||
-        !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
-        !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
+        !masu_bake_json_number(at, "ior", 1, 1000, &ior) || !read_detail(at, out) ||
+        !masu_bake_json_string(at, "match", &match) || !masu_bake_json_string(at, "name", &name) ||
+        !masu_bake_json_boolean(at, "single_sided", &single) ||
         !masu_bake_json_boolean(at, "coat_smooth", &even) ||
         !masu_bake_json_boolean(at, "unlit", &unlit) ||
         !masu_bake_json_boolean(at, "repeat", &repeat) ||

@@ -103,9 +103,12 @@ bool masu_bake_read_bounce(const masu_bake_json *scene, masu_bake_reader *r) {
     masu_bake_json at, box, probes = masu_bake_json_member(scene, "probes");
     double spacing = MASU_BAKE_LIVE_SPACING;
     if (!masu_bake_json_feature(scene, "bounce", &at, &s->live)) return false;
-    if (s->live && (!probes.value || !masu_bake_json_has(&probes, "visibility"))) s->visibility = MASU_PROBE_VISIBILITY_MAX;
+    if (s->live && (!probes.value || !masu_bake_json_has(&probes, "visibility")))
+        s->visibility = MASU_PROBE_VISIBILITY_MAX;
     if (!at.value) return true;
-    if (!masu_bake_json_object(&at, members) || !masu_bake_json_number(&at, "spacing", 1e-3, 1e6, &spacing)) return false;
+    if (!masu_bake_json_object(&at, members) ||
+        !masu_bake_json_number(&at, "spacing", 1e-3, 1e6, &spacing))
+        return false;
     box = masu_bake_json_member(&at, "box");
     bool spaced = masu_bake_json_has(&at, "spacing");
     if ((box.value && s->has_bounds) || (spaced && (s->has_spacing || s->has_counts)))

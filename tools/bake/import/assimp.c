@@ -146,7 +146,8 @@ static void note_remark(const char *text, char *user) {
     masu_bake_release(&line);
 }
 
-static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *warnings, masu_bake_buffer *error) {
+static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *warnings,
+                                         masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     if (properties) {
         aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
@@ -186,10 +187,17 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
 }
 
 /* The process ends after this function: releasing memory has no use. */
-void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece,
-                          masu_bake_buffer *warnings, masu_bake_buffer *error) {
-    masu_gltf g = {.path = path, .variant = wanted->variant, .wanted = wanted->textures, .piece = piece,
-                   .moving = wanted->moving, .plays = wanted->plays, .warnings = warnings, .error = error};
+void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted,
+                          masu_bake_content *piece, masu_bake_buffer *warnings,
+                          masu_bake_buffer *error) {
+    masu_gltf g = {.path = path,
+                   .variant = wanted->variant,
+                   .wanted = wanted->textures,
+                   .piece = piece,
+                   .moving = wanted->moving,
+                   .plays = wanted->plays,
+                   .warnings = warnings,
+                   .error = error};
     bool ours = masu_gltf_is_file(path);
     const struct aiScene *scene = &g.scene;
     if (ours && !masu_gltf_read(&g)) return;

@@ -142,8 +142,8 @@ void masu_import_forget(masu_import *m);
 /* True if a mesh is kept in `bent`. */
 bool masu_import_bends(const masu_import *m, unsigned mesh);
 /* Converts the triangles of a mesh into `bent`. */
-void masu_import_bent_mesh(masu_import *m, const struct aiMesh *mesh, masu_bake_triangles *triangles,
-                           masu_bake_losses *lost);
+void masu_import_bent_mesh(masu_import *m, const struct aiMesh *mesh,
+                           masu_bake_triangles *triangles, masu_bake_losses *lost);
 /* Called after the walk that made instances. Meshes with bones become separate instances in their
  * rest pose; the nodes that anything uses, skins and clips become sections of the piece. */
 void masu_import_live(masu_import *m);

@@ -29,7 +29,8 @@ static size_t place(struct aiFile *file) {
 
 static size_t whole(struct aiFile *file) {
     struct stat about;
-    return fstat(fileno(stream(file)), &about) == 0 && about.st_size > 0 ? (size_t)about.st_size : 0;
+    return fstat(fileno(stream(file)), &about) == 0 && about.st_size > 0 ? (size_t)about.st_size
+                                                                         : 0;
 }
 
 static enum aiReturn go_to(struct aiFile *file, size_t offset, enum aiOrigin from) {
@@ -95,5 +96,6 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
 }
 
 void masu_import_use_files(masu_import_files *files) {
-    files->io = (struct aiFileIO){.OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)(void *)files};
+    files->io = (struct aiFileIO){
+        .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)(void *)files};
 }

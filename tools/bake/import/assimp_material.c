@@ -135,11 +135,13 @@ static bool alpha_covers(const masu_import *m, const struct aiMaterial *from) {
     int flags = 0;
     unsigned count = 1;
     if (dot && (strcasecmp(dot, ".ac") == 0 || strcasecmp(dot, ".acc") == 0)) return true;
-    return aiGetMaterialIntegerArray(from, AI_MATKEY_TEXFLAGS(aiTextureType_DIFFUSE, 0), &flags, &count) ==
-               aiReturn_SUCCESS && flags & aiTextureFlags_UseAlpha;
+    return aiGetMaterialIntegerArray(from, AI_MATKEY_TEXFLAGS(aiTextureType_DIFFUSE, 0), &flags,
+                                     &count) == aiReturn_SUCCESS &&
+           flags & aiTextureFlags_UseAlpha;
 }
 
-static void convert_alpha(const masu_import *m, const struct aiMaterial *from, masu_bake_maps *maps) {
+static void convert_alpha(const masu_import *m, const struct aiMaterial *from,
+                          masu_bake_maps *maps) {
     if (alpha_covers(m, from)) maps->alpha = MASU_BAKE_ALPHA_COVERS;
 }
 
@@ -177,12 +179,14 @@ static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from
     if (m->wanted == MASU_BAKE_TEXTURES_OFF) return maps;
     convert_alpha(m, from, &maps);
     for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
-        if (take_map(m, from, &requests[i], &maps) && requests[i].map == MASU_BAKE_NORMAL) relief = requests[i].type;
+        if (take_map(m, from, &requests[i], &maps) && requests[i].map == MASU_BAKE_NORMAL)
+            relief = requests[i].type;
     }
     bool both = same_texture(from, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_METALNESS);
     for (size_t i = 0; i < 2; i++) take_map(m, from, both ? &packed[i] : &apart[i], &maps);
     if (relief != aiTextureType_NONE) {
-        maps.relief = relief == aiTextureType_HEIGHT ? MASU_BAKE_RELIEF_NAMED_HEIGHTS : MASU_BAKE_RELIEF_NAMED_NORMALS;
+        maps.relief = relief == aiTextureType_HEIGHT ? MASU_BAKE_RELIEF_NAMED_HEIGHTS
+                                                     : MASU_BAKE_RELIEF_NAMED_NORMALS;
         maps.normal_scale = masu_import_clamped(bump_strength(from, relief), -16, 16);
     }
     return maps;
@@ -357,7 +361,8 @@ uint32_t masu_import_material(masu_import *m, unsigned index, const double *colo
     const masu_import_given *from = masu_import_read_material(m, index);
     masu_blob_material to = from->material;
     /* The file has no material: its colours are the only data. */
-    bool none = (color || (colored && !m->given)) && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0;
+    bool none =
+        (color || (colored && !m->given)) && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0;
     masu_bake_maps maps = from->maps;
     for (int k = 0; k < 3 && (color || none); k++)
         to.base_color[k] = masu_import_clamped(

@@ -74,7 +74,8 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
     const struct aiScene *s = m->source;
     int channel = 0;
     unsigned count = 1;
-    if (!m->given && mesh->mMaterialIndex < s->mNumMaterials && s->mMaterials[mesh->mMaterialIndex]) {
+    if (!m->given && mesh->mMaterialIndex < s->mNumMaterials &&
+        s->mMaterials[mesh->mMaterialIndex]) {
         aiGetMaterialIntegerArray(s->mMaterials[mesh->mMaterialIndex],
                                   AI_MATKEY_UVWSRC(aiTextureType_BASE_COLOR, 0), &channel, &count);
     }

@@ -80,7 +80,8 @@ static masu_bake_affine node_transform(const struct aiNode *node) {
 
 /* glTF specifies intensities. A white matte surface has a luminance of intensity / pi / distance
  * squared. An absent range remains 0 until the scale of the placement is available. */
-static bool convert_light(const struct aiLight *from, const masu_bake_affine *space, masu_blob_light *to) {
+static bool convert_light(const struct aiLight *from, const masu_bake_affine *space,
+                          masu_blob_light *to) {
     const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
     masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y,
                           (double)from->mPosition.z};
@@ -151,7 +152,8 @@ static void convert_lights(masu_import *m, const struct aiNode *node, const masu
 
 /* Cameras are linked like lights, by the name of the node. Assimp's importers disagree on the angle
  * of an aiCamera; most use the full width. */
-static void convert_cameras(masu_import *m, const struct aiNode *node, const masu_bake_affine *world) {
+static void convert_cameras(masu_import *m, const struct aiNode *node,
+                            const masu_bake_affine *world) {
     const struct aiScene *s = m->source;
     int length = masu_import_length(&node->mName);
     if (!s->mCameras || length == 0) return;
@@ -161,17 +163,21 @@ static void convert_cameras(masu_import *m, const struct aiNode *node, const mas
             memcmp(from->mName.data, node->mName.data, (size_t)length) != 0) {
             continue;
         }
-        masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y, (double)from->mPosition.z};
-        masu_bake_vec3 ahead = {(double)from->mLookAt.x, (double)from->mLookAt.y, (double)from->mLookAt.z};
+        masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y,
+                              (double)from->mPosition.z};
+        masu_bake_vec3 ahead = {(double)from->mLookAt.x, (double)from->mLookAt.y,
+                                (double)from->mLookAt.z};
         masu_bake_vec3 at = masu_bake_apply(world, own);
-        masu_bake_vec3 direction = masu_bake_sub(masu_bake_apply(world, masu_bake_mad(own, ahead, 1)), at);
+        masu_bake_vec3 direction =
+            masu_bake_sub(masu_bake_apply(world, masu_bake_mad(own, ahead, 1)), at);
         double aspect = from->mAspect > 0 ? (double)from->mAspect : 16.0 / 9;
         double width = (double)masu_import_clamped((double)from->mHorizontalFOV, 0, 3.1);
         char name[sizeof from->mName.data + 1];
         memcpy(name, from->mName.data, (size_t)length);
         name[length] = '\0';
         /* Half the width, scaled by the node. */
-        double half = (double)masu_import_clamped((double)from->mOrthographicWidth, 0, 1e9) * masu_bake_length(direction);
+        double half = (double)masu_import_clamped((double)from->mOrthographicWidth, 0, 1e9) *
+                      masu_bake_length(direction);
         double fov = half > 0 ? 0.7 : 2 * atan(tan(width / 2) / aspect);
         masu_bake_add_camera(m->piece, name, fov, 2 * half / aspect, at, direction);
     }

@@ -19,7 +19,8 @@ static uint32_t node_count(const masu_import *m) {
 bool masu_import_is_live(const struct aiScene *s, bool moving) {
     bool live = moving && s->mAnimations && s->mNumAnimations;
     for (unsigned i = 0; s->mMeshes && i < s->mNumMeshes; i++)
-        live = live || (s->mMeshes[i] && (s->mMeshes[i]->mNumBones || (moving && s->mMeshes[i]->mNumAnimMeshes)));
+        live = live || (s->mMeshes[i] &&
+                        (s->mMeshes[i]->mNumBones || (moving && s->mMeshes[i]->mNumAnimMeshes)));
     return live;
 }
 
@@ -82,7 +83,8 @@ static masu_bake_influence *influences_of(masu_import *m, const struct aiMesh *m
         for (unsigned w = 0; bone && bone->mWeights && w < bone->mNumWeights; w++) {
             double weight = (double)bone->mWeights[w].mWeight;
             if (bone->mWeights[w].mVertexId >= mesh->mNumVertices) continue;
-            if (weight > 0 && weight < 1e30) add_weight(&all[bone->mWeights[w].mVertexId], b, weight);
+            if (weight > 0 && weight < 1e30)
+                add_weight(&all[bone->mWeights[w].mVertexId], b, weight);
         }
     }
     masu_bake_influence *out = masu_bake_allocate((size_t)mesh->mNumVertices * sizeof *out);
@@ -96,8 +98,8 @@ static masu_bake_influence *influences_of(masu_import *m, const struct aiMesh *m
     return out;
 }
 
-void masu_import_bent_mesh(masu_import *m, const struct aiMesh *mesh, masu_bake_triangles *triangles,
-                           masu_bake_losses *lost) {
+void masu_import_bent_mesh(masu_import *m, const struct aiMesh *mesh,
+                           masu_bake_triangles *triangles, masu_bake_losses *lost) {
     masu_bake_influence *influences = influences_of(m, mesh);
     triangles->influences = influences;
     triangles->bent = &m->influences;
@@ -119,7 +121,8 @@ static uint32_t find_node(const masu_import *m, const struct aiString *name) {
     int length = masu_import_length(name);
     for (uint32_t i = 0; i < node_count(m); i++) {
         const struct aiString *other = &NODES(m)[i].node->mName;
-        if (masu_import_length(other) == length && memcmp(other->data, name->data, (size_t)length) == 0)
+        if (masu_import_length(other) == length &&
+            memcmp(other->data, name->data, (size_t)length) == 0)
             return i;
     }
     return MASU_BLOB_NONE;
@@ -129,7 +132,8 @@ static uint32_t find_node(const masu_import *m, const struct aiString *name) {
  * that shows the mesh. */
 static void add_joints(masu_import *m, const struct aiMesh *mesh, uint32_t shown_by) {
     for (unsigned b = 0; b <= mesh->mNumBones; b++) {
-        masu_blob_joint joint = {.inverse_bind = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, .node = shown_by};
+        masu_blob_joint joint = {.inverse_bind = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
+                                 .node = shown_by};
         const struct aiBone *bone = b < mesh->mNumBones ? mesh->mBones[b] : NULL;
         uint32_t node = bone ? find_node(m, &bone->mName) : MASU_BLOB_NONE;
         if (node != MASU_BLOB_NONE) {
@@ -188,8 +192,10 @@ static masu_bake_vec3 vector_of(const struct aiVector3D *v) {
 }
 
 /* The difference that a target adds to a vertex; 0 if it is not finite. */
-static void delta_of(const origin *o, unsigned target, masu_bake_vec3 *position, masu_bake_vec3 *normal) {
-    const struct aiAnimMesh *t = target < o->mesh->mNumAnimMeshes ? o->mesh->mAnimMeshes[target] : NULL;
+static void delta_of(const origin *o, unsigned target, masu_bake_vec3 *position,
+                     masu_bake_vec3 *normal) {
+    const struct aiAnimMesh *t =
+        target < o->mesh->mNumAnimMeshes ? o->mesh->mAnimMeshes[target] : NULL;
     *position = *normal = masu_bake_v3(0, 0, 0);
     if (!t || o->vertex >= t->mNumVertices || o->vertex >= o->mesh->mNumVertices) return;
     if (t->mVertices)
@@ -233,7 +239,8 @@ static void add_targets(masu_import *m, const origin *origins, masu_blob_skin *s
     masu_bake_content *c = m->piece;
     const struct aiMesh *most = NULL;
     for (uint32_t k = 0; k < skin->vertex_count; k++) {
-        if (!most || target_count(m, origins[k].mesh) > target_count(m, most)) most = origins[k].mesh;
+        if (!most || target_count(m, origins[k].mesh) > target_count(m, most))
+            most = origins[k].mesh;
     }
     skin->target_count = most ? target_count(m, most) : 0;
     skin->first_target = (uint32_t)masu_bake_count(c, MASU_BLOB_MORPH_TARGETS);
@@ -241,7 +248,9 @@ static void add_targets(masu_import *m, const origin *origins, masu_blob_skin *s
     for (unsigned t = 0; t < skin->target_count; t++) {
         const struct aiAnimMesh *from = most->mAnimMeshes[t];
         masu_blob_morph_target target = {.name = MASU_BLOB_NONE};
-        if (from) target.name = masu_bake_name(c, from->mName.data, (size_t)masu_import_length(&from->mName));
+        if (from)
+            target.name =
+                masu_bake_name(c, from->mName.data, (size_t)masu_import_length(&from->mName));
         if (from && fabsf(from->mWeight) <= MASU_MORPH_WEIGHT_MAX) target.weight = from->mWeight;
         for (uint32_t k = 0; k < skin->vertex_count; k++) {
             masu_bake_vec3 position, normal;
@@ -342,7 +351,8 @@ static bool make_skin(masu_import *m, uint32_t node, masu_blob_skin *skin, uint3
         for (uint32_t k = 0; k < m->mesh_parts[mesh].count; k++) {
             const masu_blob_primitive *part =
                 &MASU_BAKE_PRIMITIVES(&m->bent)[m->mesh_parts[mesh].first + k];
-            if (!copy_part(m, part, skin->first_joint, base, m->source->mMeshes[mesh], origins)) return false;
+            if (!copy_part(m, part, skin->first_joint, base, m->source->mMeshes[mesh], origins))
+                return false;
         }
     }
     uint32_t count = (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES) - first;
@@ -473,31 +483,37 @@ static void add_tracks(const struct aiNodeAnim *from, uint32_t node, double tick
 /* Weights belong to the skins' nodes, which follow all others. */
 static int by_node(const void *a, const void *b) {
     const track *x = a, *y = b;
-    int weighs[2] = {x->channel.path == MASU_CHANNEL_WEIGHT, y->channel.path == MASU_CHANNEL_WEIGHT};
+    int weighs[2] = {x->channel.path == MASU_CHANNEL_WEIGHT,
+                     y->channel.path == MASU_CHANNEL_WEIGHT};
     if (weighs[0] != weighs[1]) return weighs[0] - weighs[1];
     if (x->channel.node != y->channel.node) return x->channel.node < y->channel.node ? -1 : 1;
     if (x->channel.path != y->channel.path) return x->channel.path < y->channel.path ? -1 : 1;
-    if (x->channel.target != y->channel.target) return x->channel.target < y->channel.target ? -1 : 1;
+    if (x->channel.target != y->channel.target)
+        return x->channel.target < y->channel.target ? -1 : 1;
     return x->order < y->order ? -1 : 1;
 }
 
 /* The weights of the targets of the skin that a node shows. Assimp's name may be the node's,
  * followed by "*" and a number. */
-static void add_weights(masu_import *m, const struct aiMeshMorphAnim *from, double tick, masu_bake_buffer *tracks) {
+static void add_weights(masu_import *m, const struct aiMeshMorphAnim *from, double tick,
+                        masu_bake_buffer *tracks) {
     struct aiString name = from->mName;
     char *star = memchr(name.data, '*', (size_t)masu_import_length(&name));
     if (star) name.length = (ai_uint32)(star - name.data);
     uint32_t node = find_node(m, &name);
     const uint32_t *skins = (const uint32_t *)(const void *)m->skin_nodes.data;
     for (uint32_t s = 0; s < m->skin_nodes.bytes / sizeof *skins; s++) {
-        const masu_blob_skin *skin = &MASU_BAKE_ARRAY(m->piece, MASU_BLOB_SKINS, const masu_blob_skin)[s];
+        const masu_blob_skin *skin =
+            &MASU_BAKE_ARRAY(m->piece, MASU_BLOB_SKINS, const masu_blob_skin)[s];
         if (skins[s] != node) continue;
         for (uint32_t t = 0; t < skin->target_count; t++) {
             track weights = {.channel = {.node = s, .path = MASU_CHANNEL_WEIGHT, .target = t}};
             for (unsigned k = 0; from->mKeys && k < from->mNumKeys; k++) {
                 const struct aiMeshMorphKey *key = &from->mKeys[k];
-                for (unsigned i = 0; key->mValues && key->mWeights && i < key->mNumValuesAndWeights; i++) {
-                    const double value[4] = {(double)masu_import_clamped(key->mWeights[i], -1e6, 1e6), 0, 0, 0};
+                for (unsigned i = 0; key->mValues && key->mWeights && i < key->mNumValuesAndWeights;
+                     i++) {
+                    const double value[4] = {
+                        (double)masu_import_clamped(key->mWeights[i], -1e6, 1e6), 0, 0, 0};
                     if (key->mValues[i] == t) add_key(&weights, key->mTime * tick, value, 1);
                 }
             }
@@ -528,8 +544,8 @@ static void make_clip(masu_import *m, const struct aiAnimation *from) {
         .name = masu_bake_name(c, from->mName.data, (size_t)masu_import_length(&from->mName))};
     for (size_t i = 0; i < count; i++) {
         masu_blob_channel channel = all[i].channel;
-        if (i && channel.node == all[i - 1].channel.node && channel.path == all[i - 1].channel.path &&
-            channel.target == all[i - 1].channel.target)
+        if (i && channel.node == all[i - 1].channel.node &&
+            channel.path == all[i - 1].channel.path && channel.target == all[i - 1].channel.target)
             continue;
         channel.first_key = (uint32_t)masu_bake_count(c, MASU_BLOB_KEYS);
         channel.key_count = (uint32_t)(all[i].keys.bytes / sizeof(masu_blob_key));
@@ -552,7 +568,8 @@ static void make_clip(masu_import *m, const struct aiAnimation *from) {
 
 static void add_node(masu_import *m, const masu_bake_affine *local, uint32_t parent,
                      uint32_t instance, uint32_t name, uint32_t skin) {
-    masu_blob_model_node node = {.parent = parent, .instance = instance, .name = name, .skin = skin};
+    masu_blob_model_node node = {
+        .parent = parent, .instance = instance, .name = name, .skin = skin};
     masu_bake_affine identity = masu_bake_identity();
     bool sane = masu_bake_affine_sane(local);
     m->bad_nodes += !sane;
@@ -607,7 +624,8 @@ void masu_import_live(masu_import *m) {
     masu_bake_buffer instances = {0};
     masu_bake_affine identity = masu_bake_identity();
     make_skins(m, &instances);
-    for (unsigned i = 0; m->moving && m->source->mAnimations && i < m->source->mNumAnimations; i++) {
+    for (unsigned i = 0; m->moving && m->source->mAnimations && i < m->source->mNumAnimations;
+         i++) {
         if (m->source->mAnimations[i]) make_clip(m, m->source->mAnimations[i]);
     }
     masu_blob_joint *joints = MASU_BAKE_ARRAY(c, MASU_BLOB_JOINTS, masu_blob_joint);
@@ -618,9 +636,10 @@ void masu_import_live(masu_import *m) {
         joints[j].node = NODES(m)[joints[j].node].number;
     masu_blob_channel *channels = MASU_BAKE_ARRAY(c, MASU_BLOB_CHANNELS, masu_blob_channel);
     for (uint64_t k = 0; k < masu_bake_count(c, MASU_BLOB_CHANNELS); k++)
-        channels[k].node = channels[k].path == MASU_CHANNEL_WEIGHT
-                               ? channels[k].node + (uint32_t)masu_bake_count(c, MASU_BLOB_MODEL_NODES)
-                               : NODES(m)[channels[k].node].number;
+        channels[k].node =
+            channels[k].path == MASU_CHANNEL_WEIGHT
+                ? channels[k].node + (uint32_t)masu_bake_count(c, MASU_BLOB_MODEL_NODES)
+                : NODES(m)[channels[k].node].number;
     for (uint32_t i = 0; i < instances.bytes / sizeof(uint32_t); i++) {
         uint32_t instance = ((const uint32_t *)(const void *)instances.data)[i];
         masu_blob_skin *skin = &MASU_BAKE_ARRAY(c, MASU_BLOB_SKINS, masu_blob_skin)[i];
@@ -632,8 +651,10 @@ void masu_import_live(masu_import *m) {
 }
 
 void masu_import_forget(masu_import *m) {
-    static const int kinds[] = {MASU_BLOB_MODEL_NODES, MASU_BLOB_CLIPS,  MASU_BLOB_CHANNELS, MASU_BLOB_KEYS,
-                                MASU_BLOB_SKINS,       MASU_BLOB_JOINTS, MASU_BLOB_SKIN_VERTICES,
-                                MASU_BLOB_MORPH_TARGETS, MASU_BLOB_MORPH_DELTAS};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) masu_bake_release(&m->piece->section[kinds[i]]);
+    static const int kinds[] = {
+        MASU_BLOB_MODEL_NODES,   MASU_BLOB_CLIPS,         MASU_BLOB_CHANNELS,
+        MASU_BLOB_KEYS,          MASU_BLOB_SKINS,         MASU_BLOB_JOINTS,
+        MASU_BLOB_SKIN_VERTICES, MASU_BLOB_MORPH_TARGETS, MASU_BLOB_MORPH_DELTAS};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        masu_bake_release(&m->piece->section[kinds[i]]);
 }

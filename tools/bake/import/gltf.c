@@ -199,7 +199,8 @@ static bool open_glb(masu_gltf *g, masu_gltf_bytes *text) {
     if (word_at(data + 4) != 2)
         return masu_gltf_fail(g, "container: found version %u, expected 2", word_at(data + 4));
     if (word_at(data + 8) > bytes)
-        return masu_gltf_fail(g, "it says that it has %u bytes, and has %zu", word_at(data + 8), bytes);
+        return masu_gltf_fail(g, "it says that it has %u bytes, and has %zu", word_at(data + 8),
+                              bytes);
     if (word_at(data + 8) >= GLB_HEAD) bytes = word_at(data + 8);
     for (size_t at = GLB_HEAD; bytes - at >= CHUNK_HEAD;) {
         uint32_t length = word_at(data + at), kind = word_at(data + at + 4);
@@ -225,7 +226,8 @@ static bool parse(masu_gltf *g) {
             text.bytes -= 3;
         }
     }
-    while (text.bytes && (text.data[text.bytes - 1] == ' ' || text.data[text.bytes - 1] == '\0')) text.bytes--;
+    while (text.bytes && (text.data[text.bytes - 1] == ' ' || text.data[text.bytes - 1] == '\0'))
+        text.bytes--;
     g->root = json_loadb((const char *)text.data, text.bytes, JSON_ALLOW_NUL, &error);
     if (!g->root)
         return masu_gltf_fail(g, "line %d, column %d: %s", error.line, error.column, error.text);
@@ -305,9 +307,9 @@ static bool check_version(masu_gltf *g) {
 }
 
 static bool check_arrays(masu_gltf *g) {
-    static const char *const names[] = {"accessors", "animations", "bufferViews", "buffers", "images",
-                                        "materials", "meshes",     "nodes",       "samplers", "scenes",
-                                        "skins",     "textures",   "cameras"};
+    static const char *const names[] = {
+        "accessors", "animations", "bufferViews", "buffers", "images",   "materials", "meshes",
+        "nodes",     "samplers",   "scenes",      "skins",   "textures", "cameras"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         (void)masu_gltf_array(g, g->root, names[i]);
         if (masu_gltf_count(g, names[i]) > 4000000u)
@@ -341,9 +343,9 @@ static bool find_variant(masu_gltf *g) {
 }
 
 static bool read_all(masu_gltf *g) {
-    if (!parse(g) || !check_version(g) || !check_required(g) || !check_arrays(g) || !find_variant(g) ||
-        !read_buffers(g) || !masu_gltf_read_materials(g) || !masu_gltf_read_nodes(g) ||
-        !masu_gltf_read_clips(g))
+    if (!parse(g) || !check_version(g) || !check_required(g) || !check_arrays(g) ||
+        !find_variant(g) || !read_buffers(g) || !masu_gltf_read_materials(g) ||
+        !masu_gltf_read_nodes(g) || !masu_gltf_read_clips(g))
         return false;
     g->scene.mMeshes = (struct aiMesh **)(void *)g->meshes.data;
     g->scene.mNumMeshes = (unsigned)(g->meshes.bytes / sizeof(struct aiMesh *));

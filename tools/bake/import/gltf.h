@@ -128,7 +128,8 @@ bool masu_gltf_flag(masu_gltf *g, const json_t *of, const char *name, bool *out)
 /* An unsigned number of at most 2^53. */
 bool masu_gltf_size(masu_gltf *g, const json_t *of, const char *name, uint64_t *out);
 /* An index below `count`; -1: absent. False: failed. */
-bool masu_gltf_index(masu_gltf *g, const json_t *of, const char *name, size_t count, json_int_t *out);
+bool masu_gltf_index(masu_gltf *g, const json_t *of, const char *name, size_t count,
+                     json_int_t *out);
 const json_t *masu_gltf_extension(masu_gltf *g, const json_t *of, const char *name);
 /* An element of an array of the file; masu_gltf_index has checked the index. NULL and failed: not
  * an object. */
@@ -142,7 +143,8 @@ size_t masu_gltf_count(const masu_gltf *g, const char *array);
 float *masu_gltf_floats(masu_gltf *g, json_int_t accessor, unsigned components, uint32_t *count,
                         unsigned *found);
 /* Accepts only unsigned integers. */
-uint32_t *masu_gltf_integers(masu_gltf *g, json_int_t accessor, unsigned components, uint32_t *count);
+uint32_t *masu_gltf_integers(masu_gltf *g, json_int_t accessor, unsigned components,
+                             uint32_t *count);
 /* The bytes of a view, decompressed if necessary. */
 bool masu_gltf_view(masu_gltf *g, json_int_t view, masu_gltf_bytes *out, size_t *stride);
 
@@ -161,7 +163,8 @@ bool masu_gltf_draco_open(const unsigned char *data, size_t bytes, masu_gltf_dra
 void masu_gltf_draco_indices(const masu_gltf_draco *draco, uint32_t *out); /* 3 * faces */
 /* Components of an attribute, at most 4; 0: absent. */
 unsigned masu_gltf_draco_components(const masu_gltf_draco *draco, uint32_t id);
-bool masu_gltf_draco_floats(const masu_gltf_draco *draco, uint32_t id, unsigned components, float *out);
+bool masu_gltf_draco_floats(const masu_gltf_draco *draco, uint32_t id, unsigned components,
+                            float *out);
 void masu_gltf_draco_close(masu_gltf_draco *draco);
 #ifdef __cplusplus
 }

@@ -12,9 +12,11 @@
 
 enum { BYTE = 5120, UBYTE, SHORT, USHORT, UINT = 5125, FLOAT };
 
-static bool slice(masu_gltf *g, uint64_t buffer, uint64_t offset, uint64_t bytes, masu_gltf_bytes *out) {
+static bool slice(masu_gltf *g, uint64_t buffer, uint64_t offset, uint64_t bytes,
+                  masu_gltf_bytes *out) {
     const masu_gltf_bytes *b = &g->buffers[buffer];
-    if (!b->data) return masu_gltf_fail(g, "buffers[%llu] holds no bytes", (unsigned long long)buffer);
+    if (!b->data)
+        return masu_gltf_fail(g, "buffers[%llu] holds no bytes", (unsigned long long)buffer);
     if (offset > b->bytes || bytes > b->bytes - offset) {
         return masu_gltf_fail(g, "bytes %llu to %llu of buffers[%llu], which has %zu",
                               (unsigned long long)offset, (unsigned long long)(offset + bytes),
@@ -62,13 +64,14 @@ static bool unpack(masu_gltf *g, const json_t *about, masu_gltf_bytes *out, size
     bool oct = filter && strcmp(filter, "OCTAHEDRAL") == 0;
     bool quat = filter && strcmp(filter, "QUATERNION") == 0;
     bool exponential = filter && strcmp(filter, "EXPONENTIAL") == 0;
-    if (filter && (!attributes || !(oct || quat || exponential) || (oct && step != 4 && step != 8) ||
-                   (quat && step != 8)))
+    if (filter && (!attributes || !(oct || quat || exponential) ||
+                   (oct && step != 4 && step != 8) || (quat && step != 8)))
         return masu_gltf_fail(g, "EXT_meshopt_compression has no filter \"%s\" here", filter);
     unsigned char *data = masu_gltf_take(g, count, step);
-    int failed = attributes  ? meshopt_decodeVertexBuffer(data, count, step, from.data, from.bytes)
-                 : triangles ? meshopt_decodeIndexBuffer(data, count, step, from.data, from.bytes)
-                             : meshopt_decodeIndexSequence(data, count, step, from.data, from.bytes);
+    int failed = attributes ? meshopt_decodeVertexBuffer(data, count, step, from.data, from.bytes)
+                 : triangles
+                     ? meshopt_decodeIndexBuffer(data, count, step, from.data, from.bytes)
+                     : meshopt_decodeIndexSequence(data, count, step, from.data, from.bytes);
     if (failed) return masu_gltf_fail(g, "EXT_meshopt_compression: the bytes are damaged");
     if (oct) meshopt_decodeFilterOct(data, count, step);
     if (quat) meshopt_decodeFilterQuat(data, count, step);
@@ -86,14 +89,16 @@ bool masu_gltf_view(masu_gltf *g, json_int_t index, masu_gltf_bytes *out, size_t
     uint64_t offset = 0, bytes = 0, step = 0;
     json_int_t buffer = -1;
     if (!place_of(g, view, &offset, &bytes, &step, &buffer)) return false;
-    if (step > 4096) return masu_gltf_fail(g, "bufferViews[%d] has a byteStride over 4096", (int)index);
+    if (step > 4096)
+        return masu_gltf_fail(g, "bufferViews[%d] has a byteStride over 4096", (int)index);
     *stride = (size_t)step;
     if (!packed) return slice(g, (uint64_t)buffer, offset, bytes, out);
     if (!g->views[index].data) {
         size_t own = 0;
         if (!unpack(g, packed, &g->views[index], &own)) return false;
         if (step && own && step != own)
-            return masu_gltf_fail(g, "EXT_meshopt_compression has another byteStride than its view");
+            return masu_gltf_fail(g,
+                                  "EXT_meshopt_compression has another byteStride than its view");
     }
     *out = g->views[index];
     if (!*stride) {
@@ -178,7 +183,8 @@ static bool find_sparse(masu_gltf *g, const json_t *sparse, accessor *a) {
         !masu_gltf_size(g, indices, "componentType", &type))
         return false;
     if (count == 0) return true;
-    if (count > a->count || !indices || !values || (type != UBYTE && type != USHORT && type != UINT))
+    if (count > a->count || !indices || !values ||
+        (type != UBYTE && type != USHORT && type != UINT))
         return masu_gltf_fail(g, "\"sparse\" is invalid");
     if (!elements(g, indices, count, size_of(type), false, &a->at, &stride) ||
         !elements(g, values, count, (size_t)a->size * a->components, false, &a->values, &stride))
@@ -196,7 +202,8 @@ static bool find(masu_gltf *g, json_int_t index, unsigned components, accessor *
     *a = (accessor){.data = NULL};
     const char *shape = masu_gltf_string(g, about, "type");
     const json_t *sparse = masu_gltf_object(g, about, "sparse");
-    if (!masu_gltf_size(g, about, "componentType", &type) || !masu_gltf_size(g, about, "count", &count) ||
+    if (!masu_gltf_size(g, about, "componentType", &type) ||
+        !masu_gltf_size(g, about, "count", &count) ||
         !masu_gltf_flag(g, about, "normalized", &a->normalized))
         return false;
     a->components = components_of(shape);
@@ -205,8 +212,8 @@ static bool find(masu_gltf *g, json_int_t index, unsigned components, accessor *
     if (!a->size || !a->components || (a->components == 16 && type != FLOAT))
         return masu_gltf_fail(g, "accessors[%lld] has an unknown type", (long long)index);
     if (components && a->components != components) {
-        return masu_gltf_fail(g, "accessors[%lld] is \"%s\": %u numbers are needed", (long long)index,
-                              shape, components);
+        return masu_gltf_fail(g, "accessors[%lld] is \"%s\": %u numbers are needed",
+                              (long long)index, shape, components);
     }
     if (count < 1 || count > INT32_MAX)
         return masu_gltf_fail(g, "accessors[%lld] has %llu elements", (long long)index,
@@ -281,7 +288,8 @@ uint32_t *masu_gltf_integers(masu_gltf *g, json_int_t index, unsigned components
     uint32_t *out = masu_gltf_take(g, a.count, a.components * sizeof *out);
     for (uint32_t i = 0; a.data && i < a.count; i++) {
         for (unsigned k = 0; k < a.components; k++)
-            out[(size_t)i * a.components + k] = unsigned_at(a.data + i * a.stride + k * a.size, a.type);
+            out[(size_t)i * a.components + k] =
+                unsigned_at(a.data + i * a.stride + k * a.size, a.type);
     }
     for (uint32_t i = 0; i < a.sparse; i++) {
         uint32_t to;

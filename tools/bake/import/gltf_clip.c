@@ -35,7 +35,8 @@ static void spline(const keys *k, const piece *p, double s, double out[4]) {
                  (3 * s2 - 2 * s3) * p->v1[i] + d * (s3 - s2) * p->a1[i];
         square += out[i] * out[i];
     }
-    for (unsigned i = 0; i < k->components && k->components == 4 && square > 0; i++) out[i] /= sqrt(square);
+    for (unsigned i = 0; i < k->components && k->components == 4 && square > 0; i++)
+        out[i] /= sqrt(square);
 }
 
 static bool is_straight(const keys *k, const piece *p, double low, double high) {
@@ -109,7 +110,8 @@ static void make_keys(keys *k, const float *times, uint32_t count, const float *
     }
 }
 
-static struct aiNodeAnim *channel_of(masu_gltf *g, const keys *k, int path, const struct aiNode *node) {
+static struct aiNodeAnim *channel_of(masu_gltf *g, const keys *k, int path,
+                                     const struct aiNode *node) {
     struct aiNodeAnim *out = masu_gltf_take(g, 1, sizeof *out);
     const double *key = (const double *)(const void *)k->all.data;
     unsigned count = (unsigned)(k->all.bytes / (5 * sizeof *key));
@@ -118,14 +120,17 @@ static struct aiNodeAnim *channel_of(masu_gltf *g, const keys *k, int path, cons
         out->mNumRotationKeys = count;
         out->mRotationKeys = masu_gltf_take(g, count, sizeof *out->mRotationKeys);
         for (unsigned i = 0; i < count; i++, key += 5)
-            out->mRotationKeys[i] = (struct aiQuatKey){
-                .mTime = key[0],
-                .mValue = {.w = (float)key[4], .x = (float)key[1], .y = (float)key[2], .z = (float)key[3]}};
+            out->mRotationKeys[i] = (struct aiQuatKey){.mTime = key[0],
+                                                       .mValue = {.w = (float)key[4],
+                                                                  .x = (float)key[1],
+                                                                  .y = (float)key[2],
+                                                                  .z = (float)key[3]}};
         return out;
     }
     struct aiVectorKey *to = masu_gltf_take(g, count, sizeof *to);
     for (unsigned i = 0; i < count; i++, key += 5)
-        to[i] = (struct aiVectorKey){.mTime = key[0], .mValue = {(float)key[1], (float)key[2], (float)key[3]}};
+        to[i] = (struct aiVectorKey){.mTime = key[0],
+                                     .mValue = {(float)key[1], (float)key[2], (float)key[3]}};
     if (path == 0) {
         out->mNumPositionKeys = count;
         out->mPositionKeys = to;
@@ -137,9 +142,11 @@ static struct aiNodeAnim *channel_of(masu_gltf *g, const keys *k, int path, cons
 }
 
 /* A channel of weights: one of Assimp's channels per target, with only that target. */
-static void add_weights(masu_gltf *g, const float *times, uint32_t count, const float *values, uint32_t targets,
-                        int how, const struct aiNode *node, struct aiAnimation *out) {
-    struct aiMeshMorphAnim **all = masu_gltf_take(g, out->mNumMorphMeshChannels + (size_t)targets, sizeof *all);
+static void add_weights(masu_gltf *g, const float *times, uint32_t count, const float *values,
+                        uint32_t targets, int how, const struct aiNode *node,
+                        struct aiAnimation *out) {
+    struct aiMeshMorphAnim **all =
+        masu_gltf_take(g, out->mNumMorphMeshChannels + (size_t)targets, sizeof *all);
     uint32_t parts = how == CUBIC ? 3 : 1;
     float *own = masu_gltf_take(g, (size_t)count * parts + 1, sizeof *own);
     if (out->mNumMorphMeshChannels)
@@ -158,8 +165,10 @@ static void add_weights(masu_gltf *g, const float *times, uint32_t count, const 
         *number = t;
         for (unsigned i = 0; i < made->mNumKeys; i++, key += 5) {
             weights[i] = key[1];
-            made->mKeys[i] = (struct aiMeshMorphKey){
-                .mTime = key[0], .mValues = number, .mWeights = &weights[i], .mNumValuesAndWeights = 1};
+            made->mKeys[i] = (struct aiMeshMorphKey){.mTime = key[0],
+                                                     .mValues = number,
+                                                     .mWeights = &weights[i],
+                                                     .mNumValuesAndWeights = 1};
         }
         all[out->mNumMorphMeshChannels++] = made;
         masu_bake_release(&k.all);
@@ -206,10 +215,12 @@ static struct aiNodeAnim *read_channel(masu_gltf *g, const json_t *clip, const j
     if (!out) return NULL;
     uint64_t needed = (uint64_t)times * (kind == CUBIC ? 3 : 1);
     if (needed > values) {
-        masu_gltf_fail(g, "samplers[%lld] has %u times and %u values", (long long)sampler, times, values);
+        masu_gltf_fail(g, "samplers[%lld] has %u times and %u values", (long long)sampler, times,
+                       values);
         return NULL;
     }
-    for (uint32_t i = 0; i < times; i++) clip_made->mDuration = fmax(clip_made->mDuration, (double)in[i]);
+    for (uint32_t i = 0; i < times; i++)
+        clip_made->mDuration = fmax(clip_made->mDuration, (double)in[i]);
     if (weighs) {
         uint64_t targets = needed ? values / needed : 0;
         if (targets <= MASU_BLOB_MORPH_TARGETS_MAX)

@@ -29,7 +29,8 @@ bool masu_gltf_number(masu_gltf *g, const json_t *of, const char *name, double *
     return true;
 }
 
-bool masu_gltf_numbers(masu_gltf *g, const json_t *of, const char *name, size_t count, double *out) {
+bool masu_gltf_numbers(masu_gltf *g, const json_t *of, const char *name, size_t count,
+                       double *out) {
     const json_t *value = json_object_get(of, name);
     if (!value) return true;
     bool good = json_is_array(value) && json_array_size(value) == count;
@@ -57,7 +58,8 @@ bool masu_gltf_size(masu_gltf *g, const json_t *of, const char *name, uint64_t *
     return true;
 }
 
-bool masu_gltf_index(masu_gltf *g, const json_t *of, const char *name, size_t count, json_int_t *out) {
+bool masu_gltf_index(masu_gltf *g, const json_t *of, const char *name, size_t count,
+                     json_int_t *out) {
     uint64_t index = UINT64_MAX;
     *out = -1;
     if (!masu_gltf_size(g, of, name, &index)) return false;

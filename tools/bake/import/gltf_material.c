@@ -54,7 +54,8 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
         about.outside = outside;
         return masu_bake_add_image(g->piece, path, &about, NULL);
     }
-    if (uri ? !masu_gltf_fetch(g, uri, &bytes) : view >= 0 && !masu_gltf_view(g, view, &bytes, &stride))
+    if (uri ? !masu_gltf_fetch(g, uri, &bytes)
+            : view >= 0 && !masu_gltf_view(g, view, &bytes, &stride))
         return MASU_BLOB_NONE;
     if (!bytes.bytes) {
         masu_gltf_note_one(g, "empty images: ignored", called);
@@ -70,7 +71,8 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
 
 /* The image of a texture that can be read: its own, else an extension's. */
 static bool source_of(masu_gltf *g, const json_t *about, json_int_t *image) {
-    static const char *const others[] = {"EXT_texture_webp", "MSFT_texture_dds", "KHR_texture_basisu"};
+    static const char *const others[] = {"EXT_texture_webp", "MSFT_texture_dds",
+                                         "KHR_texture_basisu"};
     size_t images = masu_gltf_count(g, "images");
     for (size_t i = 0; i < 2; i++) {
         const json_t *extension = masu_gltf_extension(g, about, others[i]);
@@ -104,11 +106,14 @@ static bool read_transform(masu_gltf *g, const json_t *info, texture *t) {
     const json_t *about = masu_gltf_extension(g, info, "KHR_texture_transform");
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0, set = t->set;
     if (!about) return !masu_gltf_failed(g);
-    if (!masu_gltf_numbers(g, about, "offset", 2, offset) || !masu_gltf_numbers(g, about, "scale", 2, scale) ||
-        !masu_gltf_number(g, about, "rotation", &angle) || !masu_gltf_number(g, about, "texCoord", &set))
+    if (!masu_gltf_numbers(g, about, "offset", 2, offset) ||
+        !masu_gltf_numbers(g, about, "scale", 2, scale) ||
+        !masu_gltf_number(g, about, "rotation", &angle) ||
+        !masu_gltf_number(g, about, "texCoord", &set))
         return false;
     double c = cos(angle), s = sin(angle);
-    const double uv[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    const double uv[6] = {c * scale[0],  s * scale[1], offset[0],
+                          -s * scale[0], c * scale[1], offset[1]};
     memcpy(t->uv, uv, sizeof uv);
     t->set = set >= 0 && set < 64 ? (int)set : 0;
     return true;
@@ -152,7 +157,9 @@ static const int order[] = {MASU_BAKE_BASE,       MASU_BAKE_EMISSIVE,  MASU_BAKE
 #define ORDER (sizeof order / sizeof *order)
 #define ORDER_COLORS 3 /* the first of them: maps that a material's detail does not repeat */
 
-static bool near(double a, double b) { return fabs(a - b) <= 1e-5 * fmax(1, fmax(fabs(a), fabs(b))); }
+static bool near(double a, double b) {
+    return fabs(a - b) <= 1e-5 * fmax(1, fmax(fabs(a), fabs(b)));
+}
 
 /* True if b's transform is only a repetition of a's; times: the factors along u and v. */
 static bool repeats(const texture *a, const texture *b, double times[2]) {
@@ -189,7 +196,8 @@ static uint8_t slot_of(int map) {
 
 /* Chooses a second set for the maps that do not use the first: the set of the first of them.
  * Blended materials have none. */
-static void use_second(masu_gltf *g, const maps *m, int map, const texture **second, masu_gltf_material *out, bool *used) {
+static void use_second(masu_gltf *g, const maps *m, int map, const texture **second,
+                       masu_gltf_material *out, bool *used) {
     const texture *t = &m->all[map];
     double own[2];
     uint8_t slot = slot_of(map);
@@ -226,7 +234,8 @@ static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
         const texture *t = &m->all[order[i]];
         double own[2];
         if (t->image == MASU_BLOB_NONE) continue;
-        scaled = repeats(first, t, own) && (!seen || (near(own[0], times[0]) && near(own[1], times[1])));
+        scaled =
+            repeats(first, t, own) && (!seen || (near(own[0], times[0]) && near(own[1], times[1])));
         memcpy(times, own, sizeof times);
         seen = 1;
     }
@@ -246,10 +255,11 @@ static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
                 "textures use other coordinates than the base colour of their material: ignored");
         if (t->image != MASU_BLOB_NONE &&
             (memcmp(t->wrap, first->wrap, sizeof t->wrap) != 0 || t->nearest != first->nearest))
-            masu_gltf_note_one(g,
-                               "textures have another wrap mode or filter than the base colour of their "
-                               "material, which is used",
-                               g->where);
+            masu_gltf_note_one(
+                g,
+                "textures have another wrap mode or filter than the base colour of their "
+                "material, which is used",
+                g->where);
     }
     detail[0] = (float)times[0];
     detail[1] = (float)times[1];
@@ -265,7 +275,10 @@ static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
     for (size_t i = 0; i < ORDER; i++) {
         int map = order[i];
         to->image[map] = m->all[map].image;
-        to->channel[map] = m->all[map].image == MASU_BLOB_NONE || (to->gloss && map == MASU_BAKE_METALLIC) ? 0 : channel[map];
+        to->channel[map] =
+            m->all[map].image == MASU_BLOB_NONE || (to->gloss && map == MASU_BAKE_METALLIC)
+                ? 0
+                : channel[map];
     }
     if (to->gloss) to->channel[MASU_BAKE_ROUGHNESS] = 3;
     if (!first) return;
@@ -363,10 +376,12 @@ static bool read_glossiness(masu_gltf *g, const json_t *about, masu_gltf_materia
         metallic = solve_metallic(brightness(diffuse), brightness(specular), rest);
     }
     for (int k = 0; k < 3; k++) {
-        double from_diffuse = pictured ? diffuse[k] : diffuse[k] * rest / 0.96 / fmax(1 - metallic, 1e-6);
+        double from_diffuse =
+            pictured ? diffuse[k] : diffuse[k] * rest / 0.96 / fmax(1 - metallic, 1e-6);
         double from_specular = (specular[k] - 0.04 * (1 - metallic)) / fmax(metallic, 1e-6);
         double share = metallic * metallic;
-        to->base_color[k] = masu_import_clamped(from_diffuse * (1 - share) + from_specular * share, 0, 1);
+        to->base_color[k] =
+            masu_import_clamped(from_diffuse * (1 - share) + from_specular * share, 0, 1);
         double got = (double)to->base_color[k] * (1 - metallic) * 0.96;
         double got_specular = 0.04 * (1 - metallic) + (double)to->base_color[k] * metallic;
         worst = fmax(worst, fmax(fabs(got - diffuse[k] * rest), fabs(got_specular - specular[k])));
@@ -435,7 +450,8 @@ static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material 
     }
     to->specular = masu_import_clamped(most / 0.08, 0, 12.5);
     bool gray = near(color[0], color[1]) && near(color[1], color[2]);
-    for (int k = 0; k < 3 && !gray; k++) to->specular_color[k] = masu_import_clamped(color[k] / most, 0, 1);
+    for (int k = 0; k < 3 && !gray; k++)
+        to->specular_color[k] = masu_import_clamped(color[k] / most, 0, 1);
     return true;
 }
 
@@ -483,18 +499,22 @@ static void settle_lobes(masu_gltf *g, masu_blob_material *to, maps *m) {
     char what[128];
     if (metal && !shines) colored = false; /* metals reflect their base colour */
     if (shines && to->coat > 0) {
-        masu_gltf_note_one(g, "materials have a clear coat and a sheen: the sheen is ignored", g->where);
+        masu_gltf_note_one(g, "materials have a clear coat and a sheen: the sheen is ignored",
+                           g->where);
         shines = false;
         maps_of[0]->image = maps_of[1]->image = MASU_BLOB_NONE;
     }
     if (grained && (to->coat > 0 || shines)) {
-        snprintf(what, sizeof what, "materials have %s and an anisotropy: the anisotropy is ignored", first);
+        snprintf(what, sizeof what,
+                 "materials have %s and an anisotropy: the anisotropy is ignored", first);
         masu_gltf_note_one(g, what, g->where);
         grained = false;
     }
     if (colored && (to->coat > 0 || shines || grained)) {
         snprintf(what, sizeof what,
-                 "materials have %s and a specular colour, texture or reflectance above 0.08: gray, at most 0.08", first);
+                 "materials have %s and a specular colour, texture or reflectance above 0.08: "
+                 "gray, at most 0.08",
+                 first);
         masu_gltf_note_one(g, what, g->where);
         colored = false;
     }
@@ -503,36 +523,43 @@ static void settle_lobes(masu_gltf *g, masu_blob_material *to, maps *m) {
     if (!grained) to->anisotropy = to->anisotropy_rotation = 0;
     if (!colored) {
         float share = 0.2126f * hue[0] + 0.7152f * hue[1] + 0.0722f * hue[2];
-        to->specular = masu_import_clamped((double)(tinted ? to->specular * share : to->specular), 0, 1);
+        to->specular =
+            masu_import_clamped((double)(tinted ? to->specular * share : to->specular), 0, 1);
         hue[0] = hue[1] = hue[2] = 0;
     }
     if (shines && !near((double)to->specular, 0.5)) {
-        masu_gltf_note_one(g, "materials have a sheen and a specular factor or index of refraction, which is ignored",
-                           g->where);
+        masu_gltf_note_one(
+            g,
+            "materials have a sheen and a specular factor or index of refraction, which is ignored",
+            g->where);
     }
     if (shines) to->specular = 0.5f;
 }
 
 /* One normal map for both layers, with its strength; see above. */
-static void settle_normals(masu_gltf *g, masu_gltf_material *out, maps *m, texture *coat, double scale[2]) {
+static void settle_normals(masu_gltf *g, masu_gltf_material *out, maps *m, texture *coat,
+                           double scale[2]) {
     texture *base = &m->all[MASU_BAKE_NORMAL];
     double times[2];
-    if (!(out->given.material.coat > 0) || (base->image == MASU_BLOB_NONE && coat->image == MASU_BLOB_NONE)) return;
+    if (!(out->given.material.coat > 0) ||
+        (base->image == MASU_BLOB_NONE && coat->image == MASU_BLOB_NONE))
+        return;
     out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_BASE;
     if (coat->image == MASU_BLOB_NONE) return;
     if (base->image == MASU_BLOB_NONE) {
         out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_COAT;
         *base = *coat;
         scale[0] = scale[1];
-    } else if (base->image == coat->image && repeats(base, coat, times) && near(times[0], 1) && near(times[1], 1) &&
-               near(scale[0], scale[1])) {
+    } else if (base->image == coat->image && repeats(base, coat, times) && near(times[0], 1) &&
+               near(times[1], 1) && near(scale[0], scale[1])) {
         out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_BOTH;
     } else {
         out->given.maps.coat_scale = limited(g, scale[1], -16, 16, "clearcoatNormalTexture.scale");
         m->all[MASU_BAKE_COAT_NORMAL] = *coat;
         if (m->all[MASU_BAKE_EMISSIVE].image != MASU_BLOB_NONE || out->blends) {
             leave_out(g, &m->all[MASU_BAKE_COAT_NORMAL],
-                      "clear coats have another normal map than the base layer, and the material has emission or is "
+                      "clear coats have another normal map than the base layer, and the material "
+                      "has emission or is "
                       "transparent: ignored, they are smooth");
         }
     }
@@ -545,7 +572,8 @@ static bool read_normals(masu_gltf *g, const json_t *about, masu_gltf_material *
     if (!read_texture(g, about, "normalTexture", &m->all[MASU_BAKE_NORMAL]) ||
         !read_texture(g, above, "clearcoatNormalTexture", &coat) ||
         !masu_gltf_number(g, masu_gltf_object(g, about, "normalTexture"), "scale", &scale[0]) ||
-        !masu_gltf_number(g, above ? masu_gltf_object(g, above, "clearcoatNormalTexture") : NULL, "scale", &scale[1]))
+        !masu_gltf_number(g, above ? masu_gltf_object(g, above, "clearcoatNormalTexture") : NULL,
+                          "scale", &scale[1]))
         return false;
     settle_normals(g, out, m, &coat, scale);
     out->given.maps.normal_scale = limited(g, scale[0], -16, 16, "normalTexture.scale");
@@ -574,11 +602,13 @@ static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *t
     double thickness = 0, distance = 0, left[3] = {1, 1, 1}, index = 1.5;
     if (!masu_gltf_number(g, volume, "thicknessFactor", &thickness) ||
         !masu_gltf_number(g, volume, "attenuationDistance", &distance) ||
-        !masu_gltf_numbers(g, volume, "attenuationColor", 3, left) || !masu_gltf_number(g, refraction, "ior", &index))
+        !masu_gltf_numbers(g, volume, "attenuationColor", 3, left) ||
+        !masu_gltf_number(g, refraction, "ior", &index))
         return false;
     note_texture(g, volume, "thicknessTexture");
     if (thickness > 0 && to->metallic > 0) {
-        masu_gltf_note_one(g, "materials have a thickness and a metallic factor: they do not refract", g->where);
+        masu_gltf_note_one(
+            g, "materials have a thickness and a metallic factor: they do not refract", g->where);
     } else if (thickness > 0) {
         to->thickness = limited(g, thickness, 0, 65504, "thicknessFactor");
         /* 0 means infinity */
@@ -586,7 +616,8 @@ static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *t
     }
     if (!(thickness > 0 && distance > 0)) return true;
     limit_all(g, left, 3, 1, "attenuationColor");
-    for (int k = 0; k < 3; k++) to->base_color[k] *= (float)pow(left[k], share * thickness / distance);
+    for (int k = 0; k < 3; k++)
+        to->base_color[k] *= (float)pow(left[k], share * thickness / distance);
     return true;
 }
 
@@ -603,7 +634,8 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
     if (!(factor > 0) || out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) map->image = MASU_BLOB_NONE;
     if (!(factor > 0)) return true;
     if (map->image != MASU_BLOB_NONE && out->blends) /* the alpha of the base colour is in use */
-        leave_out(g, map, "materials have a \"transmissionTexture\" and are alpha-blended: it is ignored");
+        leave_out(g, map,
+                  "materials have a \"transmissionTexture\" and are alpha-blended: it is ignored");
     if (out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) {
         masu_gltf_note_one(
             g, "materials transmit light and are alpha-tested: drawn without transmission",
@@ -641,11 +673,12 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
     double strength = 1;
     for (int i = 0; i < MASU_BAKE_MAPS; i++) m.all[i] = (texture){.image = MASU_BLOB_NONE};
     (void)masu_gltf_string(g, about, "name");
-    if (masu_gltf_failed(g) || !read_metallic(g, about, out, &m) || !read_glossiness(g, about, out, &m) ||
-        !read_alpha(g, about, out) || !read_emission(g, about, out, &m) ||
-        !read_specular(g, about, &out->given.material, &m) || !read_coat(g, about, &out->given.material, &m) ||
-        !read_sheen(g, about, &out->given.material, &m) || !read_anisotropy(g, about, &out->given.material) ||
-        !read_transmission(g, about, out, &m) ||
+    if (masu_gltf_failed(g) || !read_metallic(g, about, out, &m) ||
+        !read_glossiness(g, about, out, &m) || !read_alpha(g, about, out) ||
+        !read_emission(g, about, out, &m) || !read_specular(g, about, &out->given.material, &m) ||
+        !read_coat(g, about, &out->given.material, &m) ||
+        !read_sheen(g, about, &out->given.material, &m) ||
+        !read_anisotropy(g, about, &out->given.material) || !read_transmission(g, about, out, &m) ||
         !read_normals(g, about, out, &m) ||
         !read_texture(g, about, "occlusionTexture", &m.all[MASU_BAKE_OCCLUSION]) ||
         !masu_gltf_number(g, masu_gltf_object(g, about, "occlusionTexture"), "strength", &strength))
@@ -669,14 +702,17 @@ static void note_mixture(masu_gltf *g) {
     char what[200];
     for (size_t i = 0; i < count; i++) {
         const json_t *about = masu_gltf_element(g, "materials", (json_int_t)i);
-        if (!about || !masu_gltf_extension(g, about, "KHR_materials_pbrSpecularGlossiness")) continue;
+        if (!about || !masu_gltf_extension(g, about, "KHR_materials_pbrSpecularGlossiness"))
+            continue;
         glossy++;
         if (!first) first = masu_gltf_name_of(g, "materials", i, about);
     }
     if (!glossy || glossy == count) return;
     snprintf(what, sizeof what,
-             "of %zu materials have specular and glossiness, which become metallic and roughness, beside others that have "
-             "these: convert the file to one of them, unless both look right", count);
+             "of %zu materials have specular and glossiness, which become metallic and roughness, "
+             "beside others that have "
+             "these: convert the file to one of them, unless both look right",
+             count);
     masu_gltf_note_many(g, glossy, what, first);
 }
 
@@ -707,7 +743,8 @@ bool masu_gltf_read_materials(masu_gltf *g) {
 }
 
 unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4], int colored) {
-    const masu_gltf_material *from = &g->materials[material < 0 ? g->material_count : (size_t)material];
+    const masu_gltf_material *from =
+        &g->materials[material < 0 ? g->material_count : (size_t)material];
     masu_import_given made = from->given;
     masu_blob_material *to = &made.material;
     double alpha = from->alpha;
@@ -721,7 +758,9 @@ unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4
     if (from->blends) alpha *= (double)masu_import_clamped(color[3], 0, 1);
     made.maps.colored = (uint8_t)(colored && from->blends ? colored : colored != 0);
     if (colored == MASU_BAKE_COLORED_ALPHA && made.maps.alpha == MASU_BAKE_ALPHA_MASK)
-        masu_gltf_note_one(g, "materials are alpha-tested and have vertex colours with alpha, which is ignored", made.name);
+        masu_gltf_note_one(
+            g, "materials are alpha-tested and have vertex colours with alpha, which is ignored",
+            made.name);
     if (from->blends && (alpha < 0.999 || made.maps.colored == MASU_BAKE_COLORED_ALPHA)) {
         made.maps.alpha = MASU_BAKE_ALPHA_BLEND;
         to->opacity = masu_import_clamped(alpha, 0, 1);
@@ -730,7 +769,8 @@ unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4
     const masu_import_given *all = (const masu_import_given *)(const void *)g->given.data;
     /* the last few: the variants of one mesh */
     for (size_t i = count; i > 0 && i + 256 > count; i--) {
-        if (all[i - 1].name == made.name && memcmp(&all[i - 1].maps, &made.maps, sizeof made.maps) == 0 &&
+        if (all[i - 1].name == made.name &&
+            memcmp(&all[i - 1].maps, &made.maps, sizeof made.maps) == 0 &&
             memcmp(&all[i - 1].material, to, sizeof *to) == 0)
             return (unsigned)(i - 1);
     }

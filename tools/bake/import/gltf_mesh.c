@@ -46,8 +46,8 @@ static bool unpacked_id(masu_gltf *g, const source *s, const char *name, json_in
 
 /* An attribute with fewer elements than there are positions is dropped. components: least, most.
  * NULL without failure: absent. */
-static float *attribute(masu_gltf *g, const source *s, const char *name, unsigned least, unsigned most,
-                        uint32_t wanted, uint32_t *count, unsigned *components) {
+static float *attribute(masu_gltf *g, const source *s, const char *name, unsigned least,
+                        unsigned most, uint32_t wanted, uint32_t *count, unsigned *components) {
     json_int_t index = -1, id = -1;
     float *out = NULL;
     if (!masu_gltf_index(g, s->attributes, name, masu_gltf_count(g, "accessors"), &index) ||
@@ -113,13 +113,16 @@ static bool read_joints(masu_gltf *g, const source *s, vertices *v) {
 }
 
 /* Texture coordinates with the material's transform applied. */
-static bool read_texcoords(masu_gltf *g, const source *s, const masu_gltf_material *material, vertices *v) {
+static bool read_texcoords(masu_gltf *g, const source *s, const masu_gltf_material *material,
+                           vertices *v) {
     char name[16];
     uint32_t count;
     unsigned n = 0;
     const double *uv = material->uv;
     bool grained = material->given.material.anisotropy > 0; /* along u */
-    if (g->wanted != MASU_BAKE_TEXTURES_FORCED && !grained && !masu_bake_has_maps(&material->given.maps)) return true;
+    if (g->wanted != MASU_BAKE_TEXTURES_FORCED && !grained &&
+        !masu_bake_has_maps(&material->given.maps))
+        return true;
     for (int set = 0; set < (material->given.maps.second ? 2 : 1) && !masu_gltf_failed(g); set++) {
         snprintf(name, sizeof name, "TEXCOORD_%d", set ? material->second_set : material->set);
         if (set) uv = material->second_uv;
@@ -135,7 +138,8 @@ static bool read_texcoords(masu_gltf *g, const source *s, const masu_gltf_materi
 }
 
 /* Notes the attributes that are ignored. Tangents follow from coordinates and normals. */
-static void note_attributes(masu_gltf *g, const source *s, const masu_gltf_material *material, bool skinned) {
+static void note_attributes(masu_gltf *g, const source *s, const masu_gltf_material *material,
+                            bool skinned) {
     const char *key;
     json_t *value;
     char used[16];
@@ -159,7 +163,8 @@ static bool keeps_targets(const masu_gltf *g) {
     return g->moving || (g->plays && masu_gltf_count(g, "animations"));
 }
 
-static bool keep_target(masu_gltf *g, const source *s, const source *from, vertices *v, size_t count, size_t t) {
+static bool keep_target(masu_gltf *g, const source *s, const source *from, vertices *v,
+                        size_t count, size_t t) {
     uint32_t found;
     unsigned n = 0;
     if (count > MASU_BLOB_MORPH_TARGETS_MAX) {
@@ -192,7 +197,8 @@ static bool morph(masu_gltf *g, const source *s, const json_t *weights, vertices
             for (size_t i = 0; from && i < (size_t)v->count * 3; i++)
                 to[a][i] = (float)((double)to[a][i] + weight * (double)from[i]);
         }
-        if (json_object_get(target.attributes, "COLOR_0") || json_object_get(target.attributes, "TEXCOORD_0"))
+        if (json_object_get(target.attributes, "COLOR_0") ||
+            json_object_get(target.attributes, "TEXCOORD_0"))
             masu_gltf_note_one(
                 g, "morph targets change colours or texture coordinates, which is not supported",
                 s->name);
@@ -211,7 +217,8 @@ static bool read_indices(masu_gltf *g, const source *s, vertices *v) {
         masu_gltf_draco_indices(&s->draco, v->indices);
         return true;
     }
-    if (!masu_gltf_index(g, s->primitive, "indices", masu_gltf_count(g, "accessors"), &index)) return false;
+    if (!masu_gltf_index(g, s->primitive, "indices", masu_gltf_count(g, "accessors"), &index))
+        return false;
     if (index >= 0) {
         v->indices = masu_gltf_integers(g, index, 1, &count);
         v->index_count = count;
@@ -258,7 +265,8 @@ static void flatten_target(masu_gltf *g, const vertices *v, target *to) {
                                  masu_bake_v3f(to->positions + 3 * ((size_t)i + (size_t)k)), 1);
         masu_bake_vec3 n = masu_bake_cross(masu_bake_sub(p[1], p[0]), masu_bake_sub(p[2], p[0]));
         if (!masu_bake_normalize(&n)) n = from;
-        for (int k = 0; k < 3; k++) masu_bake_store(masu_bake_sub(n, from), to->normals + 3 * ((size_t)i + (size_t)k));
+        for (int k = 0; k < 3; k++)
+            masu_bake_store(masu_bake_sub(n, from), to->normals + 3 * ((size_t)i + (size_t)k));
     }
 }
 
@@ -299,7 +307,8 @@ static void flatten(masu_gltf *g, vertices *v) {
 
 /* ---- aiMeshes ---- */
 
-static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct aiMesh *mesh, const char *name) {
+static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct aiMesh *mesh,
+                      const char *name) {
     const json_t *joints = json_object_get(masu_gltf_element(g, "skins", skin), "joints");
     unsigned count = (unsigned)json_array_size(joints);
     uint32_t *sums = masu_gltf_take(g, count + 1, sizeof *sums), matrices = 0;
@@ -310,7 +319,8 @@ static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct a
         return;
     if (inverse >= 0 && !(bind = masu_gltf_floats(g, inverse, 16, &matrices, NULL))) return;
     if (inverse >= 0 && matrices < count) {
-        masu_gltf_fail(g, "skins[%lld] has %u joints and %u matrices", (long long)skin, count, matrices);
+        masu_gltf_fail(g, "skins[%lld] has %u joints and %u matrices", (long long)skin, count,
+                       matrices);
         return;
     }
     uint64_t lost = 0;
@@ -323,7 +333,8 @@ static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct a
                 lost++;
         }
     }
-    if (lost) masu_gltf_note_many(g, lost, "weights are of joints that a skin has not: left out", name);
+    if (lost)
+        masu_gltf_note_many(g, lost, "weights are of joints that a skin has not: left out", name);
     mesh->mBones = masu_gltf_take(g, count, sizeof *mesh->mBones);
     mesh->mNumBones = count;
     struct aiBone *bones = masu_gltf_take(g, count, sizeof *bones);
@@ -350,8 +361,8 @@ static void add_bones(masu_gltf *g, const vertices *v, json_int_t skin, struct a
 }
 
 /* Adds a mesh with the triangles of `list` (NULL: all). */
-static unsigned add_mesh(masu_gltf *g, const vertices *v, const struct aiMesh *like, const uint32_t *list,
-                         uint32_t triangles, unsigned material) {
+static unsigned add_mesh(masu_gltf *g, const vertices *v, const struct aiMesh *like,
+                         const uint32_t *list, uint32_t triangles, unsigned material) {
     struct aiMesh *mesh = masu_gltf_take(g, 1, sizeof *mesh);
     *mesh = *like;
     mesh->mMaterialIndex = material;
@@ -366,8 +377,9 @@ static unsigned add_mesh(masu_gltf *g, const vertices *v, const struct aiMesh *l
 }
 
 /* Adds a mesh for each colour, or one with vertex colours. */
-static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like, json_int_t material,
-                      uint32_t triangles, masu_bake_buffer *numbers, const char *name) {
+static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like,
+                      json_int_t material, uint32_t triangles, masu_bake_buffer *numbers,
+                      const char *name) {
     masu_import_colors colors;
     bool blends = g->materials[material < 0 ? g->material_count : (size_t)material].blends;
     masu_import_group_colors(&g->pool, v->colors, v->count, v->indices, triangles, !blends,
@@ -378,7 +390,8 @@ static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like
         struct aiMesh colored = *like;
         int how = colors.translucent ? MASU_BAKE_COLORED_ALPHA : MASU_BAKE_COLORED;
         colored.mColors[0] = (struct aiColor4D *)(void *)v->colors;
-        unsigned number = add_mesh(g, v, &colored, NULL, triangles, masu_gltf_given(g, material, white, how));
+        unsigned number =
+            add_mesh(g, v, &colored, NULL, triangles, masu_gltf_given(g, material, white, how));
         masu_bake_append(numbers, &number, sizeof number);
     }
     for (uint32_t i = 0; i < colors.count; i++) {
@@ -390,14 +403,16 @@ static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like
 }
 
 /* Assimp stores absolute values, not differences. */
-static struct aiVector3D *moved(masu_gltf *g, const float *base, const float *delta, uint32_t count) {
+static struct aiVector3D *moved(masu_gltf *g, const float *base, const float *delta,
+                                uint32_t count) {
     float *to = masu_gltf_take(g, count, 12);
     if (!base) return NULL;
     for (size_t i = 0; i < (size_t)count * 3; i++) to[i] = base[i] + (delta ? delta[i] : 0);
     return (struct aiVector3D *)(void *)to;
 }
 
-static void add_targets(masu_gltf *g, const vertices *v, const json_t *mesh, const json_t *weights, struct aiMesh *to) {
+static void add_targets(masu_gltf *g, const vertices *v, const json_t *mesh, const json_t *weights,
+                        struct aiMesh *to) {
     const json_t *names = json_object_get(json_object_get(mesh, "extras"), "targetNames");
     to->mNumAnimMeshes = v->target_count;
     to->mAnimMeshes = masu_gltf_take(g, v->target_count, sizeof *to->mAnimMeshes);
@@ -438,7 +453,8 @@ static bool add_primitive(masu_gltf *g, const vertices *v, json_int_t material, 
         add_parts(g, v, &like, material, triangles, numbers, name);
         return true;
     }
-    unsigned number = add_mesh(g, v, &like, NULL, triangles, masu_gltf_given(g, material, white, MASU_BAKE_COLORED_NOT));
+    unsigned number = add_mesh(g, v, &like, NULL, triangles,
+                               masu_gltf_given(g, material, white, MASU_BAKE_COLORED_NOT));
     masu_bake_append(numbers, &number, sizeof number);
     return true;
 }
@@ -454,7 +470,8 @@ static bool material_of(masu_gltf *g, const json_t *primitive, json_int_t *mater
         const json_t *variants = masu_gltf_array(g, mapping, "variants");
         for (size_t k = 0; k < json_array_size(variants); k++) {
             const json_t *variant = json_array_get(variants, k);
-            if (!json_is_integer(variant) || json_integer_value(variant) != g->variant_index) continue;
+            if (!json_is_integer(variant) || json_integer_value(variant) != g->variant_index)
+                continue;
             return masu_gltf_index(g, mapping, "material", g->material_count, material);
         }
     }
@@ -469,20 +486,22 @@ static bool open_draco(masu_gltf *g, source *s) {
     if (!about) return !masu_gltf_failed(g);
     if (!masu_gltf_index(g, about, "bufferView", g->view_count, &view)) return false;
     s->packed = masu_gltf_object(g, about, "attributes");
-    if (view < 0 || !s->packed) return masu_gltf_fail(g, "KHR_draco_mesh_compression lacks a member");
+    if (view < 0 || !s->packed)
+        return masu_gltf_fail(g, "KHR_draco_mesh_compression lacks a member");
     if (!masu_gltf_view(g, view, &bytes, &stride)) return false;
     return masu_gltf_draco_open(bytes.data, bytes.bytes, &s->draco) ||
            masu_gltf_fail(g, "KHR_draco_mesh_compression: the bytes are damaged");
 }
 
-static bool read_primitive(masu_gltf *g, source *s, unsigned mode, json_int_t skin, const json_t *owner,
-                           const json_t *weights, masu_bake_buffer *numbers) {
+static bool read_primitive(masu_gltf *g, source *s, unsigned mode, json_int_t skin,
+                           const json_t *owner, const json_t *weights, masu_bake_buffer *numbers) {
     vertices v = {0};
     json_int_t chosen = -1;
     unsigned n = 0;
     uint32_t count;
     if (!material_of(g, s->primitive, &chosen) || !open_draco(g, s)) return false;
-    const masu_gltf_material *material = &g->materials[chosen < 0 ? g->material_count : (size_t)chosen];
+    const masu_gltf_material *material =
+        &g->materials[chosen < 0 ? g->material_count : (size_t)chosen];
     v.positions = attribute(g, s, "POSITION", 3, 3, 0, &v.count, &n);
     if (masu_gltf_failed(g)) return false;
     if (!v.positions) {
@@ -492,15 +511,16 @@ static bool read_primitive(masu_gltf *g, source *s, unsigned mode, json_int_t sk
     v.normals = attribute(g, s, "NORMAL", 3, 3, v.count, &count, &n);
     note_attributes(g, s, material, skin >= 0);
     if (masu_gltf_failed(g) || !read_texcoords(g, s, material, &v) || !read_colors(g, s, &v) ||
-        (skin >= 0 && !read_joints(g, s, &v)) || !morph(g, s, weights, &v) || !read_indices(g, s, &v))
+        (skin >= 0 && !read_joints(g, s, &v)) || !morph(g, s, weights, &v) ||
+        !read_indices(g, s, &v))
         return false;
     unroll(g, s->packed ? 4 : mode, &v);
     flatten(g, &v);
     return add_primitive(g, &v, chosen, skin, owner, weights, numbers, s->name);
 }
 
-static bool read_mesh(masu_gltf *g, const json_t *mesh, size_t index, json_int_t skin, const json_t *weights,
-                      masu_gltf_made *made) {
+static bool read_mesh(masu_gltf *g, const json_t *mesh, size_t index, json_int_t skin,
+                      const json_t *weights, masu_gltf_made *made) {
     masu_gltf_at(g, "meshes", index, mesh);
     const json_t *primitives = masu_gltf_array(g, mesh, "primitives");
     masu_bake_buffer numbers = {0};
@@ -534,7 +554,8 @@ bool masu_gltf_make_mesh(masu_gltf *g, json_int_t index, json_int_t skin, const 
     const json_t *mesh = masu_gltf_element(g, "meshes", index);
     if (!mesh) return false;
     for (const masu_gltf_made *m = g->made[index]; m; m = m->next) {
-        if (m->skin == skin && (m->weights == weights || (weights && m->weights && json_equal(m->weights, weights)))) {
+        if (m->skin == skin &&
+            (m->weights == weights || (weights && m->weights && json_equal(m->weights, weights)))) {
             *out = m;
             return true;
         }
@@ -543,5 +564,6 @@ bool masu_gltf_make_mesh(masu_gltf *g, json_int_t index, json_int_t skin, const 
     *made = (masu_gltf_made){.next = g->made[index], .skin = skin, .weights = weights};
     g->made[index] = made;
     *out = made;
-    return read_mesh(g, mesh, (size_t)index, skin, weights ? weights : masu_gltf_array(g, mesh, "weights"), made);
+    return read_mesh(g, mesh, (size_t)index, skin,
+                     weights ? weights : masu_gltf_array(g, mesh, "weights"), made);
 }

@@ -43,7 +43,8 @@ static void name_nodes(masu_gltf *g) {
     for (size_t i = 0; i < g->node_count; i++) {
         char text[1024];
         bool again = i && strcmp(all[i].name, all[i - 1].name) == 0;
-        snprintf(text, sizeof text, again ? "%.900s nodes[%zu]" : "%.1000s", all[i].name, all[i].node);
+        snprintf(text, sizeof text, again ? "%.900s nodes[%zu]" : "%.1000s", all[i].name,
+                 all[i].node);
         masu_gltf_set_string(&g->nodes[all[i].node].mName, text);
     }
 }
@@ -68,13 +69,26 @@ static bool transform_of(masu_gltf *g, const json_t *node, struct aiMatrix4x4 *o
     double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, m[16];
     if (json_object_get(node, "matrix")) {
         if (!masu_gltf_numbers(g, node, "matrix", 16, m)) return false;
-        *out = (struct aiMatrix4x4){(float)m[0],  (float)m[4], (float)m[8],  (float)m[12],
-                                    (float)m[1],  (float)m[5], (float)m[9],  (float)m[13],
-                                    (float)m[2],  (float)m[6], (float)m[10], (float)m[14], 0, 0, 0, 1};
+        *out = (struct aiMatrix4x4){(float)m[0],
+                                    (float)m[4],
+                                    (float)m[8],
+                                    (float)m[12],
+                                    (float)m[1],
+                                    (float)m[5],
+                                    (float)m[9],
+                                    (float)m[13],
+                                    (float)m[2],
+                                    (float)m[6],
+                                    (float)m[10],
+                                    (float)m[14],
+                                    0,
+                                    0,
+                                    0,
+                                    1};
         return true;
     }
-    if (!masu_gltf_numbers(g, node, "translation", 3, t) || !masu_gltf_numbers(g, node, "rotation", 4, q) ||
-        !masu_gltf_numbers(g, node, "scale", 3, s))
+    if (!masu_gltf_numbers(g, node, "translation", 3, t) ||
+        !masu_gltf_numbers(g, node, "rotation", 4, q) || !masu_gltf_numbers(g, node, "scale", 3, s))
         return false;
     *out = matrix_of(t, q, s);
     return true;
@@ -108,7 +122,8 @@ static bool find_roots(masu_gltf *g, const bool *is_child, struct aiNode *root) 
     if (scene) masu_gltf_at(g, "scenes", (size_t)chosen, scene);
     if (scene) (void)masu_gltf_string(g, scene, "name");
     const json_t *nodes = scene ? masu_gltf_array(g, scene, "nodes") : NULL;
-    root->mChildren = masu_gltf_take(g, scene ? json_array_size(nodes) : g->node_count, sizeof *root->mChildren);
+    root->mChildren =
+        masu_gltf_take(g, scene ? json_array_size(nodes) : g->node_count, sizeof *root->mChildren);
     for (size_t i = 0; i < json_array_size(nodes); i++) {
         const json_t *node = json_array_get(nodes, i);
         json_int_t number = json_is_integer(node) ? json_integer_value(node) : -1;
@@ -120,8 +135,10 @@ static bool find_roots(masu_gltf *g, const bool *is_child, struct aiNode *root) 
         if (!is_child[i]) root->mChildren[root->mNumChildren++] = &g->nodes[i];
     }
     if (scenes > 1)
-        masu_gltf_note_many(g, scenes - 1, "scenes besides the one that is shown: left out",
-                            masu_gltf_name_of(g, "scenes", chosen == 0, json_array_get(json_object_get(g->root, "scenes"), chosen == 0)));
+        masu_gltf_note_many(
+            g, scenes - 1, "scenes besides the one that is shown: left out",
+            masu_gltf_name_of(g, "scenes", chosen == 0,
+                              json_array_get(json_object_get(g->root, "scenes"), chosen == 0)));
     g->where[0] = '\0';
     return !masu_gltf_failed(g);
 }
@@ -140,8 +157,10 @@ static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at)
     double color[3] = {1, 1, 1}, intensity = 1, range = 0, inner = 0, outer = MASU_BAKE_PI / 4;
     const char *type = masu_gltf_string(g, light, "type");
     const json_t *spot = masu_gltf_object(g, light, "spot");
-    if (!masu_gltf_numbers(g, light, "color", 3, color) || !masu_gltf_number(g, light, "intensity", &intensity) ||
-        !masu_gltf_number(g, light, "range", &range) || !masu_gltf_number(g, spot, "innerConeAngle", &inner) ||
+    if (!masu_gltf_numbers(g, light, "color", 3, color) ||
+        !masu_gltf_number(g, light, "intensity", &intensity) ||
+        !masu_gltf_number(g, light, "range", &range) ||
+        !masu_gltf_number(g, spot, "innerConeAngle", &inner) ||
         !masu_gltf_number(g, spot, "outerConeAngle", &outer))
         return false;
     bool directional = type && !strcmp(type, "directional");
@@ -163,8 +182,9 @@ static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at)
                   : strcmp(type, "spot") == 0 ? aiLightSource_SPOT
                                               : aiLightSource_POINT;
     made->mDirection.z = -1;
-    made->mColorDiffuse = (struct aiColor3D){(float)(color[0] * intensity), (float)(color[1] * intensity),
-                                             (float)(color[2] * intensity)};
+    made->mColorDiffuse =
+        (struct aiColor3D){(float)(color[0] * intensity), (float)(color[1] * intensity),
+                           (float)(color[2] * intensity)};
     made->mAngleInnerCone = (float)inner;
     made->mAngleOuterCone = (float)outer;
     float reach = masu_import_clamped(range, 0, 1e9);
@@ -190,7 +210,9 @@ static bool add_camera(masu_gltf *g, const json_t *node, const struct aiNode *at
                            at->mName.data);
         return true;
     }
-    if (!masu_gltf_number(g, lens, "yfov", &height) || !masu_gltf_number(g, lens, "aspectRatio", &aspect)) return false;
+    if (!masu_gltf_number(g, lens, "yfov", &height) ||
+        !masu_gltf_number(g, lens, "aspectRatio", &aspect))
+        return false;
     if (!lens) aspect = mag[0] / mag[1];
     aspect = aspect > 1e-3 && aspect < 1e3 ? aspect : 16.0 / 9;
     height = (double)masu_import_clamped(height, 0, 3.1);
@@ -215,10 +237,13 @@ static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node
     for (int a = 0; a < 3; a++) {
         json_int_t index = -1;
         uint32_t own = 0;
-        if (!masu_gltf_index(g, attributes, names[a], masu_gltf_count(g, "accessors"), &index)) return false;
+        if (!masu_gltf_index(g, attributes, names[a], masu_gltf_count(g, "accessors"), &index))
+            return false;
         if (index < 0) continue;
         if (!(values[a] = masu_gltf_floats(g, index, a == 1 ? 4 : 3, &own, NULL))) return false;
-        if (count && own != count) return masu_gltf_fail(g, "EXT_mesh_gpu_instancing: %s has %u, others %u", names[a], own, count);
+        if (count && own != count)
+            return masu_gltf_fail(g, "EXT_mesh_gpu_instancing: %s has %u, others %u", names[a], own,
+                                  count);
         count = own;
     }
     for (int a = 0; a < 3; a++) known += json_object_get(attributes, names[a]) != NULL;
@@ -226,18 +251,23 @@ static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node
         masu_gltf_note_one(
             g, "nodes have attributes of instances other than their transforms: ignored",
             node->mName.data);
-    if (!count) return !attributes || masu_gltf_fail(g, "EXT_mesh_gpu_instancing has no attributes");
+    if (!count)
+        return !attributes || masu_gltf_fail(g, "EXT_mesh_gpu_instancing has no attributes");
     static const char what[] = "instances";
     if (count > INSTANCES_MAX) return masu_gltf_fail(g, "more than 4 million %s", what);
-    struct aiNode **children = masu_gltf_take(g, (size_t)node->mNumChildren + count, sizeof *children);
+    struct aiNode **children =
+        masu_gltf_take(g, (size_t)node->mNumChildren + count, sizeof *children);
     struct aiNode *made = masu_gltf_take(g, count, sizeof *made);
     for (unsigned i = 0; i < node->mNumChildren; i++) children[i] = node->mChildren[i];
     for (uint32_t i = 0; i < count; i++) {
         double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
         char name[1024];
-        for (int k = 0; k < 3 && values[0]; k++) t[k] = (double)values[0][3 * (size_t)i + (size_t)k];
-        for (int k = 0; k < 4 && values[1]; k++) q[k] = (double)values[1][4 * (size_t)i + (size_t)k];
-        for (int k = 0; k < 3 && values[2]; k++) s[k] = (double)values[2][3 * (size_t)i + (size_t)k];
+        for (int k = 0; k < 3 && values[0]; k++)
+            t[k] = (double)values[0][3 * (size_t)i + (size_t)k];
+        for (int k = 0; k < 4 && values[1]; k++)
+            q[k] = (double)values[1][4 * (size_t)i + (size_t)k];
+        for (int k = 0; k < 3 && values[2]; k++)
+            s[k] = (double)values[2][3 * (size_t)i + (size_t)k];
         made[i].mTransformation = matrix_of(t, q, s);
         made[i].mMeshes = node->mMeshes;
         made[i].mNumMeshes = node->mNumMeshes;
@@ -259,8 +289,8 @@ static bool fill_node(masu_gltf *g, size_t index) {
     masu_gltf_at(g, "nodes", index, node);
     const json_t *weights = masu_gltf_array(g, node, "weights");
     if (!masu_gltf_index(g, node, "mesh", g->mesh_count, &mesh) ||
-        !masu_gltf_index(g, node, "skin", masu_gltf_count(g, "skins"), &skin) || !add_light(g, node, to) ||
-        !add_camera(g, node, to))
+        !masu_gltf_index(g, node, "skin", masu_gltf_count(g, "skins"), &skin) ||
+        !add_light(g, node, to) || !add_camera(g, node, to))
         return false;
     if (mesh >= 0) {
         const masu_gltf_made *made = NULL;
@@ -315,7 +345,8 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
     g->nodes = masu_gltf_take(g, g->node_count + 1, sizeof *g->nodes);
     bool *is_child = masu_gltf_take(g, g->node_count, 1);
     struct aiNode *root = &g->nodes[g->node_count];
-    root->mTransformation.a1 = root->mTransformation.b2 = root->mTransformation.c3 = root->mTransformation.d4 = 1;
+    root->mTransformation.a1 = root->mTransformation.b2 = root->mTransformation.c3 =
+        root->mTransformation.d4 = 1;
     masu_gltf_set_string(&root->mName, "ROOT");
     name_nodes(g);
     for (size_t i = 0; i < g->node_count; i++) {
@@ -323,7 +354,8 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
         if (!node) return false;
         masu_gltf_at(g, "nodes", i, node);
         (void)masu_gltf_string(g, node, "name");
-        if (!transform_of(g, node, &g->nodes[i].mTransformation) || !link_children(g, i, node, is_child))
+        if (!transform_of(g, node, &g->nodes[i].mTransformation) ||
+            !link_children(g, i, node, is_child))
             return false;
     }
     g->where[0] = '\0';

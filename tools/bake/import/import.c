@@ -49,7 +49,8 @@ static void import_in_child(void *argument, int fd) {
     masu_bake_read_model(wanted->path, &wanted->how, &piece, &warnings, &error);
     if (piece.names_cut) {
         char text[96];
-        snprintf(text, sizeof text, "%u names are longer than %u bytes, and cut\n", piece.names_cut, MASU_BLOB_NAME_MAX);
+        snprintf(text, sizeof text, "%u names are longer than %u bytes, and cut\n", piece.names_cut,
+                 MASU_BLOB_NAME_MAX);
         masu_bake_append_text(&warnings, text);
     }
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
@@ -185,6 +186,7 @@ bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_c
     return import_file((import){path, {.textures = textures}}, piece);
 }
 
-bool masu_bake_import_as(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece) {
+bool masu_bake_import_as(const char *path, const masu_bake_wanted *wanted,
+                         masu_bake_content *piece) {
     return import_file((import){path, *wanted}, piece);
 }

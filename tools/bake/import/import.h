@@ -21,6 +21,7 @@
 bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece);
 
 /* The same with more options. */
-bool masu_bake_import_as(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece);
+bool masu_bake_import_as(const char *path, const masu_bake_wanted *wanted,
+                         masu_bake_content *piece);
 
 #endif

@@ -22,7 +22,8 @@ typedef struct masu_bake_wanted {
 
 /* Fills `piece`, which must be checked before use. Writes warnings, one per line, and on failure an
  * error. */
-void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece,
-                          masu_bake_buffer *warnings, masu_bake_buffer *error);
+void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted,
+                          masu_bake_content *piece, masu_bake_buffer *warnings,
+                          masu_bake_buffer *error);
 
 #endif

@@ -89,9 +89,10 @@ static bool is_shared(const char *model, const char *name, masu_bake_buffer *out
     if (!path) return false;
     size_t track = strlen(path), car = track;
     bool found = false;
-    bool is_car = step_up(path, &car, NULL) && step_up(path, &car, NULL) && step_up(path, &car, "cars");
-    bool is_track = step_up(path, &track, NULL) && step_up(path, &track, NULL) && step_up(path, &track, NULL) &&
-                    step_up(path, &track, "tracks");
+    bool is_car =
+        step_up(path, &car, NULL) && step_up(path, &car, NULL) && step_up(path, &car, "cars");
+    bool is_track = step_up(path, &track, NULL) && step_up(path, &track, NULL) &&
+                    step_up(path, &track, NULL) && step_up(path, &track, "tracks");
     if (is_car || is_track) {
         masu_bake_buffer folder = {0};
         masu_bake_append(&folder, path, is_car ? car : track);

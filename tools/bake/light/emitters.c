@@ -43,7 +43,8 @@ typedef struct corners {
 static const masu_bake_vec3 *sorted_at;
 
 static int by_position(const void *a, const void *b) {
-    return memcmp(&sorted_at[*(const uint32_t *)a], &sorted_at[*(const uint32_t *)b], sizeof *sorted_at);
+    return memcmp(&sorted_at[*(const uint32_t *)a], &sorted_at[*(const uint32_t *)b],
+                  sizeof *sorted_at);
 }
 
 static uint32_t root_of(uint32_t *parent, uint32_t i) {
@@ -77,8 +78,8 @@ static masu_bake_vec3 along(const masu_bake_vec3 axis[2], double angle) {
 }
 
 /* Half the extent of the part along an axis; its centre, relative to the part's centre. */
-static double half_along(const corners *c, uint32_t part, masu_bake_vec3 center, masu_bake_vec3 axis,
-                         double *middle) {
+static double half_along(const corners *c, uint32_t part, masu_bake_vec3 center,
+                         masu_bake_vec3 axis, double *middle) {
     double low = DBL_MAX, high = -DBL_MAX;
     for (size_t i = 0; i < c->count; i++) {
         if (c->part[i] != part) continue;
@@ -118,9 +119,11 @@ typedef struct box {
     double size;
 } box;
 
-static void try_axes(const corners *c, uint32_t n, masu_bake_vec3 center, const masu_bake_vec3 axis[2], box *best) {
+static void try_axes(const corners *c, uint32_t n, masu_bake_vec3 center,
+                     const masu_bake_vec3 axis[2], box *best) {
     double unused;
-    double size = half_along(c, n, center, axis[0], &unused) * half_along(c, n, center, axis[1], &unused);
+    double size =
+        half_along(c, n, center, axis[0], &unused) * half_along(c, n, center, axis[1], &unused);
     if (!(size < best->size * (1 - 1e-6))) return;
     *best = (box){{axis[0], axis[1]}, size};
 }
@@ -235,8 +238,8 @@ static double radius_about(const corners *c, uint32_t n, masu_bake_vec3 center, 
 }
 
 /* The light in world space, with the part's flux; *cover: the part's area by the light's. */
-static masu_blob_light shape_of(const corners *c, uint32_t n, const part *p, bool single, const float color[3],
-                                double *cover) {
+static masu_blob_light shape_of(const corners *c, uint32_t n, const part *p, bool single,
+                                const float color[3], double *cover) {
     masu_blob_light light = {.radius = 1e-6f, .parent = MASU_BLOB_NONE, .name = MASU_BLOB_NONE};
     masu_bake_vec3 zero = {0, 0, 0}, u = zero, v = zero;
     double shines = p->area, area; /* emitting areas of the part and of the light */
@@ -301,7 +304,8 @@ static void add_light(masu_bake_content *content, masu_blob_light light, uint32_
     if (!masu_bake_invert(&to, &back)) return;
     masu_bake_vec3 origin = masu_bake_apply(&back, zero);
     for (int k = 0; k < 3; k++)
-        column[k] = masu_bake_sub(masu_bake_apply(&back, masu_bake_v3(k == 0, k == 1, k == 2)), origin);
+        column[k] =
+            masu_bake_sub(masu_bake_apply(&back, masu_bake_v3(k == 0, k == 1, k == 2)), origin);
     double size = cbrt(fabs(masu_bake_dot(column[0], masu_bake_cross(column[1], column[2]))));
     light.range = (float)fmin(masu_bake_area_range(&light), 1e9);
     light.radius = (float)fmin(fmax((double)light.radius * size, 1e-6), 1e9);
@@ -335,15 +339,17 @@ static void fit_part(masu_bake_content *content, uint32_t instance, const corner
         return;
     if (cover < COVER_LEAST) {
         if (wanted == MASU_BAKE_AREA_YES)
-            masu_cli_warn("%s: an emissive part of %.3g x %.3g x %.3g m fills %.0f %% of the shape around it; "
+            masu_cli_warn("%s: an emissive part of %.3g x %.3g x %.3g m fills %.0f %% of the shape "
+                          "around it; "
                           "expected at least %.0f %%: it lights nothing",
-                          where, 2 * p.half[0], 2 * p.half[1], 2 * p.half[2], 100 * cover, 100 * COVER_LEAST);
+                          where, 2 * p.half[0], 2 * p.half[1], 2 * p.half[2], 100 * cover,
+                          100 * COVER_LEAST);
         return;
     }
     if (fits_so_far(content) >= MASU_BAKE_EMITTERS_MAX) {
         if (wanted == MASU_BAKE_AREA_YES)
-            masu_cli_warn("%s: emission lights nothing: the scene has %u such lights already", where,
-                          MASU_BAKE_EMITTERS_MAX);
+            masu_cli_warn("%s: emission lights nothing: the scene has %u such lights already",
+                          where, MASU_BAKE_EMITTERS_MAX);
         return;
     }
     report(&light, where);
@@ -352,8 +358,8 @@ static void fit_part(masu_bake_content *content, uint32_t instance, const corner
 
 /* ---- Meshes ---------------------------------------------------------------------------------- */
 
-static void fit_primitive(masu_bake_content *content, uint32_t instance, const masu_blob_primitive *primitive,
-                          int wanted, const char *where) {
+static void fit_primitive(masu_bake_content *content, uint32_t instance,
+                          const masu_blob_primitive *primitive, int wanted, const char *where) {
     masu_blob_material m = MASU_BAKE_MATERIALS(content)[primitive->material];
     masu_bake_maps maps = MASU_BAKE_MAPS_OF(content)[primitive->material];
     masu_bake_affine to = masu_bake_transform(&MASU_BAKE_INSTANCES(content)[instance]);
@@ -361,7 +367,8 @@ static void fit_primitive(masu_bake_content *content, uint32_t instance, const m
     bool plain = maps.image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE;
     if (!plain || maps.alpha > MASU_BAKE_ALPHA_OPAQUE || maps.additive) {
         if (wanted == MASU_BAKE_AREA_YES)
-            masu_cli_warn("%s: emission with %s lights nothing", where, plain ? "transparency" : "a texture");
+            masu_cli_warn("%s: emission with %s lights nothing", where,
+                          plain ? "transparency" : "a texture");
         return;
     }
     corners c = {.count = primitive->index_count};
@@ -370,7 +377,8 @@ static void fit_primitive(masu_bake_content *content, uint32_t instance, const m
     if (!c.at || !c.part) abort();
     for (size_t i = 0; i < c.count; i++) {
         uint32_t index = MASU_BAKE_INDICES(content)[primitive->first_index + i];
-        const masu_blob_vertex *vertex = &MASU_BAKE_VERTICES(content)[primitive->first_vertex + index];
+        const masu_blob_vertex *vertex =
+            &MASU_BAKE_VERTICES(content)[primitive->first_vertex + index];
         masu_bake_vec3 at = masu_bake_apply(&to, masu_bake_v3f(vertex->position));
         c.at[i] = masu_bake_v3(at.x + 0.0, at.y + 0.0, at.z + 0.0); /* -0 is 0 */
     }
@@ -388,7 +396,8 @@ static void fit_primitive(masu_bake_content *content, uint32_t instance, const m
     free(c.part);
 }
 
-void masu_bake_fit_emitters(masu_bake_content *content, uint64_t first, int wanted, const char *where) {
+void masu_bake_fit_emitters(masu_bake_content *content, uint64_t first, int wanted,
+                            const char *where) {
     if (wanted == MASU_BAKE_AREA_NO) return;
     for (uint64_t i = first; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
         uint32_t number = MASU_BAKE_INSTANCES(content)[i].mesh;

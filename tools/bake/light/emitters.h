@@ -12,6 +12,7 @@ enum { MASU_BAKE_AREA_AUTO, MASU_BAKE_AREA_YES, MASU_BAKE_AREA_NO };
 
 /* Appends lights for the instances from `first` on, each attached to its instance. `where`: prefix
  * of messages. Textured emission and skinned meshes are skipped; YES reports the skipped ones. */
-void masu_bake_fit_emitters(masu_bake_content *content, uint64_t first, int wanted, const char *where);
+void masu_bake_fit_emitters(masu_bake_content *content, uint64_t first, int wanted,
+                            const char *where);
 
 #endif

@@ -26,7 +26,8 @@ struct masu_bake_field {
 masu_bake_field *masu_bake_field_make(const masu_bake_content *content, const char *source) {
     if (!source || !masu_bake_count(content, MASU_BLOB_SDF)) return NULL;
     if (!masu_bake_is_sdf(source)) {
-        masu_cli_warn("%s: light probes do not know hand-written GLSL: it blocks no light of theirs", source);
+        masu_cli_warn(
+            "%s: light probes do not know hand-written GLSL: it blocks no light of theirs", source);
         return NULL;
     }
     const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
@@ -43,7 +44,9 @@ masu_bake_field *masu_bake_field_make(const masu_bake_content *content, const ch
     uint32_t unknown = 0;
     for (uint32_t i = 0; i < f->count; i++) unknown += f->parts[i].user;
     if (unknown)
-        masu_cli_warn("%s: light probes do not know the GLSL of %u parts: they block no light of theirs", source, unknown);
+        masu_cli_warn(
+            "%s: light probes do not know the GLSL of %u parts: they block no light of theirs",
+            source, unknown);
     for (int k = 0; k < 3; k++) {
         f->low[k] = (double)sdf->bounds_min[k];
         f->high[k] = (double)sdf->bounds_max[k];
@@ -60,8 +63,8 @@ void masu_bake_field_release(masu_bake_field *f) {
 }
 
 /* The part of the ray within a box. */
-static bool clip(const double low[3], const double high[3], const double o[3], const double d[3], double *near,
-                 double *far) {
+static bool clip(const double low[3], const double high[3], const double o[3], const double d[3],
+                 double *near, double *far) {
     for (int k = 0; k < 3; k++) {
         if (fabs(d[k]) < 1e-12) {
             if (!(o[k] >= low[k] && o[k] <= high[k])) return false;
@@ -86,7 +89,8 @@ typedef struct met {
     uint32_t count;
 } met;
 
-static void list_parts(const masu_bake_field *f, const double o[3], const double d[3], double near, double far, met *m) {
+static void list_parts(const masu_bake_field *f, const double o[3], const double d[3], double near,
+                       double far, met *m) {
     m->count = 0;
     for (uint32_t i = 0; i < f->count; i++) {
         const masu_sdfc_part *p = &f->parts[i];
@@ -102,14 +106,15 @@ static void list_parts(const masu_bake_field *f, const double o[3], const double
     }
 }
 
-static void fill(const masu_bake_field *f, met *m, const double p[3], const float d[3], double t, bool back,
-                 uint32_t part, masu_bake_hit *hit) {
+static void fill(const masu_bake_field *f, met *m, const double p[3], const float d[3], double t,
+                 bool back, uint32_t part, masu_bake_hit *hit) {
     double n[3], length = 0, look[MASU_SDFC_MATERIAL_SLOTS], h = 1e-5 * (1 + t), towards = 0;
     for (int k = 0; k < 3; k++) {
         double a[3] = {p[0], p[1], p[2]}, b[3] = {p[0], p[1], p[2]};
         a[k] += h;
         b[k] -= h;
-        n[k] = masu_sdfc_field_run(f->field, part, a, m->room) - masu_sdfc_field_run(f->field, part, b, m->room);
+        n[k] = masu_sdfc_field_run(f->field, part, a, m->room) -
+               masu_sdfc_field_run(f->field, part, b, m->room);
         length += n[k] * n[k];
     }
     length = sqrt(length);
@@ -143,7 +148,8 @@ bool masu_bake_field_ray(const masu_bake_field *f, const float origin[3], const 
         waiting *w = &m.parts[next];
         double t = w->until, enough = NEAR_ENOUGH * (1 + t);
         const double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
-        double away = masu_sdfc_field_run(f->field, w->part, p, m.room) / fmax(f->parts[w->part].lipschitz, 1e-6);
+        double away = masu_sdfc_field_run(f->field, w->part, p, m.room) /
+                      fmax(f->parts[w->part].lipschitz, 1e-6);
         if (away < enough && !(t == 0 && away > 0)) {
             if (hit) fill(f, &m, p, direction, t, t == 0, w->part, hit);
             return true;

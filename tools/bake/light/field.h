@@ -14,7 +14,7 @@ void masu_bake_field_release(masu_bake_field *field);
 
 /* The closest surface before `far`; direction of unit length. hit: NULL, or filled. A ray that
  * starts inside a solid hits its back face there. Thread-safe. */
-bool masu_bake_field_ray(const masu_bake_field *field, const float origin[3], const float direction[3],
-                         float far, masu_bake_hit *hit);
+bool masu_bake_field_ray(const masu_bake_field *field, const float origin[3],
+                         const float direction[3], float far, masu_bake_hit *hit);
 
 #endif

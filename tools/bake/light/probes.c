@@ -49,7 +49,8 @@ static double live_spacing(const double size[3], uint64_t each) {
         if (!(total > most)) break;
     }
     if (spacing > MASU_BAKE_LIVE_SPACING && !masu_cli_quiet())
-        printf("bounce: probes %.3g m apart instead of %.3g, to take at most %llu MiB; \"spacing\" or a smaller "
+        printf("bounce: probes %.3g m apart instead of %.3g, to take at most %llu MiB; \"spacing\" "
+               "or a smaller "
                "\"box\" sets it\n",
                spacing, MASU_BAKE_LIVE_SPACING, (unsigned long long)(MASU_BAKE_LIVE_BYTES >> 20));
     return spacing;
@@ -182,7 +183,8 @@ static void texel_direction(uint32_t side, uint32_t i, uint32_t j, float d[3]) {
 static uint32_t unorm16(float v) { return (uint32_t)(fminf(v, 1.0f) * 65535.0f + 0.5f); }
 
 /* Means over a lobe as wide as a texel or two: powers 32 and 64, narrow 200. */
-static void make_map(uint32_t side, bool narrow, uint32_t rays, const float (*hits)[4], uint32_t *map) {
+static void make_map(uint32_t side, bool narrow, uint32_t rays, const float (*hits)[4],
+                     uint32_t *map) {
     uint32_t outer = side + 2;
     for (uint32_t j = 0; j < side; j++) {
         for (uint32_t i = 0; i < side; i++) {
@@ -266,7 +268,8 @@ static void trace_probe(void *context, uint32_t item) {
     for (uint32_t s = 0; s < w->sets; s++) {
         for (uint32_t k = 0; k < COEFFICIENTS; k++) {
             double band = k < 3 ? 1 : k < 12 ? 2.0 / 3 : 0.25;
-            sums[s * COEFFICIENTS + k] = (float)(total[s][k] * band * 4 * MASU_BAKE_PI / fmax(paths, 1));
+            sums[s * COEFFICIENTS + k] =
+                (float)(total[s][k] * band * 4 * MASU_BAKE_PI / fmax(paths, 1));
         }
     }
     w->valid[item] = !touches && (float)backs <= BACKS_MOST * (float)rays;

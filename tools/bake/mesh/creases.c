@@ -45,7 +45,8 @@ static void measure(const masu_bake_triangles *t, const uint32_t *three, face *o
     masu_bake_vec3 p[3];
     for (int k = 0; k < 3; k++) p[k] = masu_bake_v3f(t->positions + 3 * (size_t)three[k]);
     for (int k = 0; k < 3; k++)
-        out->angle[k] = angle_between(masu_bake_sub(p[(k + 1) % 3], p[k]), masu_bake_sub(p[(k + 2) % 3], p[k]));
+        out->angle[k] =
+            angle_between(masu_bake_sub(p[(k + 1) % 3], p[k]), masu_bake_sub(p[(k + 2) % 3], p[k]));
     out->normal = masu_bake_cross(masu_bake_sub(p[1], p[0]), masu_bake_sub(p[2], p[0]));
     if (!masu_bake_normalize(&out->normal)) out->normal = masu_bake_v3(0, 1, 0);
 }
@@ -57,27 +58,31 @@ static void smooth(const face *faces, const corner *here, uint64_t count, int16_
         masu_bake_vec3 sum = {0, 0, 0};
         for (uint64_t j = 0; j < count && count <= AROUND_MAX; j++) {
             const face *f = &faces[here[j].at / 3];
-            if (masu_bake_dot(own, f->normal) >= CREASE) sum = masu_bake_mad(sum, f->normal, f->angle[here[j].at % 3]);
+            if (masu_bake_dot(own, f->normal) >= CREASE)
+                sum = masu_bake_mad(sum, f->normal, f->angle[here[j].at % 3]);
         }
         if (!masu_bake_normalize(&sum)) sum = own;
         masu_bake_encode_normal(sum, out[here[i].at]);
     }
 }
 
-void masu_bake_creased_normals(const masu_bake_triangles *t, const uint32_t *corners, uint64_t count, int16_t (*out)[2]) {
+void masu_bake_creased_normals(const masu_bake_triangles *t, const uint32_t *corners,
+                               uint64_t count, int16_t (*out)[2]) {
     if (!count) return;
     face *faces = masu_bake_allocate((size_t)(count / 3) * sizeof *faces);
     corner *sorted = masu_bake_allocate((size_t)count * sizeof *sorted);
     for (uint64_t i = 0; i < count; i += 3) measure(t, corners + i, &faces[i / 3]);
     for (uint64_t i = 0; i < count; i++) {
         /* -0 is 0 */
-        for (int k = 0; k < 3; k++) sorted[i].position[k] = t->positions[3 * (size_t)corners[i] + (size_t)k] + 0;
+        for (int k = 0; k < 3; k++)
+            sorted[i].position[k] = t->positions[3 * (size_t)corners[i] + (size_t)k] + 0;
         sorted[i].at = (uint32_t)i;
     }
     qsort(sorted, (size_t)count, sizeof *sorted, by_position);
     for (uint64_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count; end++) {
-            if (memcmp(sorted[i].position, sorted[end].position, sizeof sorted[i].position) != 0) break;
+            if (memcmp(sorted[i].position, sorted[end].position, sizeof sorted[i].position) != 0)
+                break;
         }
         smooth(faces, sorted + i, end - i, out);
     }

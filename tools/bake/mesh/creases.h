@@ -7,6 +7,7 @@
 /* Writes the quantised normal of each of `count` corners, three per triangle. The corners are
  * indices into the vertices of t, all in range, and no triangle has zero area. Edges below 60
  * degrees are smooth; other faces are flat-shaded. */
-void masu_bake_creased_normals(const masu_bake_triangles *t, const uint32_t *corners, uint64_t count, int16_t (*out)[2]);
+void masu_bake_creased_normals(const masu_bake_triangles *t, const uint32_t *corners,
+                               uint64_t count, int16_t (*out)[2]);
 
 #endif

@@ -26,7 +26,9 @@ static void keep(field *f, int x, int z, double height) {
 
 static int cell_of(double at, double low, double cell) {
     double index = floor((at - low) / cell);
-    return index < 0 ? -1 : index >= CELLS ? (at <= low + cell * CELLS * (1 + 1e-9) ? CELLS - 1 : CELLS) : (int)index;
+    return index < 0        ? -1
+           : index >= CELLS ? (at <= low + cell * CELLS * (1 + 1e-9) ? CELLS - 1 : CELLS)
+                            : (int)index;
 }
 
 static void add_vertex(field *f, masu_bake_vec3 p) {
@@ -48,13 +50,17 @@ static void add_triangle(field *f, const masu_bake_vec3 p[3]) {
     for (int k = 0; k < 3; k++) add_vertex(f, p[k]);
     double area = (p[1].x - p[0].x) * (p[2].z - p[0].z) - (p[2].x - p[0].x) * (p[1].z - p[0].z);
     if (area == 0) return; /* a line when projected; its ends have been written */
-    int x0 = clamp_cell(low[0], f->low.x, f->cell[0]), x1 = clamp_cell(high[0], f->low.x, f->cell[0]);
-    int z0 = clamp_cell(low[1], f->low.z, f->cell[1]), z1 = clamp_cell(high[1], f->low.z, f->cell[1]);
+    int x0 = clamp_cell(low[0], f->low.x, f->cell[0]),
+        x1 = clamp_cell(high[0], f->low.x, f->cell[0]);
+    int z0 = clamp_cell(low[1], f->low.z, f->cell[1]),
+        z1 = clamp_cell(high[1], f->low.z, f->cell[1]);
     for (int z = z0; z <= z1; z++) {
         for (int x = x0; x <= x1; x++) {
             double qx = f->low.x + (x + 0.5) * f->cell[0], qz = f->low.z + (z + 0.5) * f->cell[1];
-            double b = ((qx - p[0].x) * (p[2].z - p[0].z) - (p[2].x - p[0].x) * (qz - p[0].z)) / area;
-            double c = ((p[1].x - p[0].x) * (qz - p[0].z) - (qx - p[0].x) * (p[1].z - p[0].z)) / area;
+            double b =
+                ((qx - p[0].x) * (p[2].z - p[0].z) - (p[2].x - p[0].x) * (qz - p[0].z)) / area;
+            double c =
+                ((p[1].x - p[0].x) * (qz - p[0].z) - (qx - p[0].x) * (p[1].z - p[0].z)) / area;
             if (b < 0 || c < 0 || b + c > 1) continue;
             keep(f, x, z, p[0].y + b * (p[1].y - p[0].y) + c * (p[2].y - p[0].y));
         }
@@ -65,14 +71,16 @@ static void add_content(field *f, const masu_bake_content *c, const masu_bake_af
     for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_INSTANCES); i++) {
         const masu_blob_instance *instance = &MASU_BAKE_INSTANCES(c)[i];
         const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(c)[instance->mesh];
-        masu_bake_affine own = masu_bake_transform(instance), world = masu_bake_multiply(placement, &own);
+        masu_bake_affine own = masu_bake_transform(instance),
+                         world = masu_bake_multiply(placement, &own);
         for (uint32_t j = 0; j < mesh->primitive_count; j++) {
             const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(c)[mesh->first_primitive + j];
             const uint32_t *indices = MASU_BAKE_INDICES(c) + p->first_index;
             for (uint32_t k = 0; k + 2 < p->index_count; k += 3) {
                 masu_bake_vec3 corners[3];
                 for (uint32_t n = 0; n < 3; n++) {
-                    const float *v = MASU_BAKE_VERTICES(c)[p->first_vertex + indices[k + n]].position;
+                    const float *v =
+                        MASU_BAKE_VERTICES(c)[p->first_vertex + indices[k + n]].position;
                     corners[n] = masu_bake_apply(&world, masu_bake_v3f(v));
                 }
                 add_triangle(f, corners);
@@ -89,7 +97,11 @@ double masu_bake_drop(const masu_bake_content *scene, const masu_bake_content *p
     double least = fmax(fmax(extent.x, extent.z) * 1e-6, 1e-9);
     const masu_bake_affine identity = masu_bake_identity();
     double *heights = masu_bake_allocate(2 * CELLS * CELLS * sizeof *heights);
-    field model = {box.low, {fmax(extent.x, least) / CELLS, fmax(extent.z, least) / CELLS}, HUGE_VAL, heights, true};
+    field model = {box.low,
+                   {fmax(extent.x, least) / CELLS, fmax(extent.z, least) / CELLS},
+                   HUGE_VAL,
+                   heights,
+                   true};
     field below = model;
     below.heights = heights + CELLS * CELLS;
     below.lowest = false;

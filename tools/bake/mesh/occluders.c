@@ -95,7 +95,8 @@ static double volume_of(const masu_bake_content *content, const masu_blob_mesh *
         for (uint32_t k = 0; k + 3 <= p->index_count; k += 3) {
             masu_bake_vec3 c[3];
             for (uint32_t n = 0; n < 3; n++)
-                c[n] = masu_bake_v3f(MASU_BAKE_VERTICES(content)[p->first_vertex + index[k + n]].position);
+                c[n] = masu_bake_v3f(
+                    MASU_BAKE_VERTICES(content)[p->first_vertex + index[k + n]].position);
             sum += masu_bake_dot(c[0], masu_bake_cross(c[1], c[2]));
         }
     }

@@ -40,14 +40,16 @@ static int by_radius(const void *a, const void *b) {
  * too. */
 static double radius_of(const masu_blob_vertex *a, const masu_blob_vertex *b) {
     masu_bake_vec3 edge = masu_bake_sub(masu_bake_v3f(b->position), masu_bake_v3f(a->position));
-    masu_bake_vec3 turn = masu_bake_sub(masu_bake_decode_normal(b->normal), masu_bake_decode_normal(a->normal));
+    masu_bake_vec3 turn =
+        masu_bake_sub(masu_bake_decode_normal(b->normal), masu_bake_decode_normal(a->normal));
     double convex = masu_bake_dot(turn, edge);
     return convex > 0 ? masu_bake_dot(edge, edge) / convex : HUGE_VAL;
 }
 
 /* The radius that all but thin_share of the surface has at least. A triangle has the radius of its
  * most curved edge. */
-static double thin_radius(const masu_blob_vertex *vertices, const uint32_t *indices, uint32_t triangles, curved *room) {
+static double thin_radius(const masu_blob_vertex *vertices, const uint32_t *indices,
+                          uint32_t triangles, curved *room) {
     double area = 0, thin = 0;
     for (uint32_t t = 0; t < triangles; t++) {
         const masu_blob_vertex *v[3];
@@ -55,8 +57,9 @@ static double thin_radius(const masu_blob_vertex *vertices, const uint32_t *indi
         masu_bake_vec3 first = masu_bake_v3f(v[0]->position);
         masu_bake_vec3 cross = masu_bake_cross(masu_bake_sub(masu_bake_v3f(v[1]->position), first),
                                                masu_bake_sub(masu_bake_v3f(v[2]->position), first));
-        room[t] = (curved){fmin(radius_of(v[0], v[1]), fmin(radius_of(v[1], v[2]), radius_of(v[2], v[0]))),
-                           masu_bake_length(cross)};
+        room[t] = (curved){
+            fmin(radius_of(v[0], v[1]), fmin(radius_of(v[1], v[2]), radius_of(v[2], v[0]))),
+            masu_bake_length(cross)};
         area += room[t].area;
     }
     qsort(room, triangles, sizeof *room, by_radius);
@@ -68,7 +71,8 @@ static double thin_radius(const masu_blob_vertex *vertices, const uint32_t *indi
 }
 
 void masu_bake_measure_rise(masu_bake_content *content) {
-    curved *room = masu_bake_allocate((1 + masu_bake_count(content, MASU_BLOB_INDICES) / 3) * sizeof *room);
+    curved *room =
+        masu_bake_allocate((1 + masu_bake_count(content, MASU_BLOB_INDICES) / 3) * sizeof *room);
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_PRIMITIVES); i++) {
         masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(content)[i];
         const masu_blob_vertex *vertices = &MASU_BAKE_VERTICES(content)[p->first_vertex];
@@ -81,7 +85,9 @@ void masu_bake_measure_rise(masu_bake_content *content) {
             rise = fmax(rise, rise_of(&vertices[indices[k]], &vertices[indices[next]]));
         }
         rise = fmin(rise, most * masu_bake_length(diagonal));
-        if (rise > 0) rise = fmin(rise, most_of_radius * thin_radius(vertices, indices, p->index_count / 3, room));
+        if (rise > 0)
+            rise = fmin(rise,
+                        most_of_radius * thin_radius(vertices, indices, p->index_count / 3, room));
         p->rise = (float)rise;
     }
     free(room);

@@ -288,7 +288,9 @@ void masu_bake_trace_release(masu_bake_trace *trace) {
     free(trace);
 }
 
-void masu_bake_trace_add(masu_bake_trace *trace, const masu_bake_field *field) { trace->field = field; }
+void masu_bake_trace_add(masu_bake_trace *trace, const masu_bake_field *field) {
+    trace->field = field;
+}
 
 uint64_t masu_bake_trace_triangles(const masu_bake_trace *trace) { return trace->triangles; }
 
@@ -379,13 +381,16 @@ static bool polygon_ray(const masu_bake_trace *trace, const float origin[3],
 }
 
 /* The field wants directions of unit length. */
-static bool field_ray(const masu_bake_trace *trace, const float origin[3], const float direction[3], float far,
-                      masu_bake_hit *hit) {
+static bool field_ray(const masu_bake_trace *trace, const float origin[3], const float direction[3],
+                      float far, masu_bake_hit *hit) {
     if (!trace->field) return false;
-    float length = sqrtf(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+    float length = sqrtf(direction[0] * direction[0] + direction[1] * direction[1] +
+                         direction[2] * direction[2]);
     if (!(length > 0)) return false;
     const float d[3] = {direction[0] / length, direction[1] / length, direction[2] / length};
-    if (!masu_bake_field_ray(trace->field, origin, d, far < FLT_MAX / length ? far * length : FLT_MAX, hit)) return false;
+    if (!masu_bake_field_ray(trace->field, origin, d,
+                             far < FLT_MAX / length ? far * length : FLT_MAX, hit))
+        return false;
     if (hit) hit->t /= length;
     return true;
 }
@@ -396,8 +401,8 @@ bool masu_bake_trace_ray(const masu_bake_trace *trace, const float origin[3],
     return field_ray(trace, origin, direction, met ? hit->t : far, hit) || met;
 }
 
-static bool polygons_free(const masu_bake_trace *trace, const float origin[3], const float direction[3],
-                          float far) {
+static bool polygons_free(const masu_bake_trace *trace, const float origin[3],
+                          const float direction[3], float far) {
     if (!trace->triangles) return true;
     if (trace->masks) {
         masu_bake_hit hit;
@@ -412,5 +417,6 @@ static bool polygons_free(const masu_bake_trace *trace, const float origin[3], c
 
 bool masu_bake_trace_free(const masu_bake_trace *trace, const float origin[3],
                           const float direction[3], float far) {
-    return polygons_free(trace, origin, direction, far) && !field_ray(trace, origin, direction, far, NULL);
+    return polygons_free(trace, origin, direction, far) &&
+           !field_ray(trace, origin, direction, far, NULL);
 }

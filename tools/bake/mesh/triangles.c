@@ -202,8 +202,8 @@ static uint32_t weld(welder *w, const corner *c) {
         const float *texcoord = MASU_BAKE_ARRAY(w->content, MASU_BLOB_TEXCOORDS, const float) +
                                 2 * ((size_t)p->first_vertex + there);
         if (memcmp(other, vertex, sizeof *vertex) == 0 &&
-            memcmp(texcoord, c->texcoord, sizeof c->texcoord) == 0 && same_attributes(w, there, c) &&
-            same_influence(w, there, c)) {
+            memcmp(texcoord, c->texcoord, sizeof c->texcoord) == 0 &&
+            same_attributes(w, there, c) && same_influence(w, there, c)) {
             return there;
         }
     }
@@ -273,7 +273,8 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
         free(kept);
         return false;
     }
-    int16_t(*normals)[2] = masu_bake_allocate((size_t)(t->normals ? t->vertex_count : count) * sizeof *normals);
+    int16_t(*normals)[2] =
+        masu_bake_allocate((size_t)(t->normals ? t->vertex_count : count) * sizeof *normals);
     if (t->normals)
         mend_normals(t, kept, count, normals, losses);
     else
@@ -299,7 +300,8 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
                 losses->bad_texcoords += !usable(second);
             }
             if (w.bent) made.influence = t->influences[from];
-            memcpy(made.vertex.normal, normals[t->normals ? from : i + (uint64_t)k], sizeof made.vertex.normal);
+            memcpy(made.vertex.normal, normals[t->normals ? from : i + (uint64_t)k],
+                   sizeof made.vertex.normal);
             /* + 0 converts -0 to 0: equal positions have equal bits. */
             for (int c = 0; c < 3; c++) {
                 made.vertex.position[c] = t->positions[3 * (size_t)from + c] + 0;

@@ -16,8 +16,8 @@ void masu_bake_add_camera(masu_bake_content *content, const char *name, double f
                           masu_bake_vec3 position, masu_bake_vec3 direction) {
     masu_bake_camera c;
     memset(&c, 0, sizeof c);
-    if (!masu_bake_sane(position) || !masu_bake_normalize(&direction) || !(height >= 0 && height <= HEIGHT_MOST) ||
-        !(fov_y >= FOV_LEAST && fov_y <= FOV_MOST))
+    if (!masu_bake_sane(position) || !masu_bake_normalize(&direction) ||
+        !(height >= 0 && height <= HEIGHT_MOST) || !(fov_y >= FOV_LEAST && fov_y <= FOV_MOST))
         return;
     snprintf(c.name, sizeof c.name, "%s", name);
     for (char *at = c.name; *at; at++) {
@@ -38,7 +38,8 @@ const char *masu_bake_check_cameras(const masu_bake_content *piece) {
         if (!end || c->own > (size_t)(end - c->name)) return "a camera whose name does not end";
         double length = masu_bake_length(masu_bake_v3f(c->direction));
         if (!masu_bake_sane(masu_bake_v3f(c->position)) || !(length > 0.99 && length < 1.01) ||
-            !((double)c->height >= 0 && (double)c->height <= HEIGHT_MOST * 1.01) || !((double)c->fov_y >= FOV_LEAST * 0.99 && (double)c->fov_y <= FOV_MOST * 1.01))
+            !((double)c->height >= 0 && (double)c->height <= HEIGHT_MOST * 1.01) ||
+            !((double)c->fov_y >= FOV_LEAST * 0.99 && (double)c->fov_y <= FOV_MOST * 1.01))
             return "a camera out of range";
     }
     return NULL;
@@ -50,13 +51,16 @@ void masu_bake_place_cameras(masu_bake_content *scene, const masu_bake_content *
     for (uint32_t i = 0; i < masu_bake_camera_count(piece); i++) {
         const masu_bake_camera *from = &MASU_BAKE_CAMERAS(piece)[i];
         masu_bake_vec3 zero = masu_bake_apply(placement, origin);
-        masu_bake_vec3 ahead = masu_bake_sub(masu_bake_apply(placement, masu_bake_v3f(from->direction)), zero);
+        masu_bake_vec3 ahead =
+            masu_bake_sub(masu_bake_apply(placement, masu_bake_v3f(from->direction)), zero);
         char name[2 * MASU_BAKE_CAMERA_NAME];
         bool named = prefix && *prefix;
-        snprintf(name, sizeof name, "%.120s%s%.120s", named ? prefix : "", named ? "/" : "", from->name + from->own);
+        snprintf(name, sizeof name, "%.120s%s%.120s", named ? prefix : "", named ? "/" : "",
+                 from->name + from->own);
         uint32_t before = masu_bake_camera_count(scene);
-        masu_bake_add_camera(scene, name, (double)from->fov_y, (double)from->height * masu_bake_length(ahead), masu_bake_apply(placement, masu_bake_v3f(from->position)),
-                             ahead);
+        masu_bake_add_camera(scene, name, (double)from->fov_y,
+                             (double)from->height * masu_bake_length(ahead),
+                             masu_bake_apply(placement, masu_bake_v3f(from->position)), ahead);
         if (!named || masu_bake_camera_count(scene) == before) continue;
         masu_bake_camera *made = &MASU_BAKE_CAMERAS(scene)[before];
         size_t own = strnlen(prefix, 120) + 1;

@@ -139,8 +139,11 @@ static const char *check_maps(const masu_bake_content *c) {
                 return "a map of no picture";
             }
         }
-        if (m->gloss > 1 || m->additive > 1 || m->single > 1 || m->colored > MASU_BAKE_COLORED_ALPHA || m->second > MASU_MATERIAL_HAS_MAPS || m->alpha > MASU_BAKE_ALPHA_COVERS || m->relief > 2 ||
-            m->nearest > 1 || m->transmission > 1 || !in_range(&m->coat_scale, 1, -16, 16) || m->wrap[0] > 3 || m->wrap[1] > 3 || !in_range(&m->cutoff, 1, 0, 1) ||
+        if (m->gloss > 1 || m->additive > 1 || m->single > 1 ||
+            m->colored > MASU_BAKE_COLORED_ALPHA || m->second > MASU_MATERIAL_HAS_MAPS ||
+            m->alpha > MASU_BAKE_ALPHA_COVERS || m->relief > 2 || m->nearest > 1 ||
+            m->transmission > 1 || !in_range(&m->coat_scale, 1, -16, 16) || m->wrap[0] > 3 ||
+            m->wrap[1] > 3 || !in_range(&m->cutoff, 1, 0, 1) ||
             !in_range(&m->normal_scale, 1, -16, 16) || !in_range(&m->occlusion, 1, 0, 1)) {
             return "a map out of range";
         }
@@ -152,7 +155,8 @@ static const char *check_maps(const masu_bake_content *c) {
         masu_bake_count(c, MASU_BLOB_TEXCOORDS_1) > masu_bake_count(c, MASU_BLOB_VERTICES))
         return "more colours or texture coordinates than vertices";
     if (!in_range(MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS_1, const float),
-                  (size_t)(2 * masu_bake_count(c, MASU_BLOB_TEXCOORDS_1)), -MASU_TEXCOORD_MAX, MASU_TEXCOORD_MAX))
+                  (size_t)(2 * masu_bake_count(c, MASU_BLOB_TEXCOORDS_1)), -MASU_TEXCOORD_MAX,
+                  MASU_TEXCOORD_MAX))
         return "texture coordinates out of range";
     const float *texcoords = MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS, const float);
     if (!in_range(texcoords, (size_t)(2 * masu_bake_count(c, MASU_BLOB_TEXCOORDS)),
@@ -180,7 +184,8 @@ static const char *check_lights(const masu_bake_content *c) {
         const masu_blob_light *light = &MASU_BAKE_LIGHTS(c)[i];
         double value;
         masu_punctual_light_state state = masu_light_state_of(light);
-        if ((light->type & MASU_LIGHT_TYPE) > MASU_LIGHT_RECTANGLE || masu_light_state_wrong(&state, &value))
+        if ((light->type & MASU_LIGHT_TYPE) > MASU_LIGHT_RECTANGLE ||
+            masu_light_state_wrong(&state, &value))
             return "a light with a value out of range";
         if (light->parent != MASU_BLOB_NONE &&
             light->parent >= masu_bake_count(c, MASU_BLOB_INSTANCES)) {
@@ -284,10 +289,11 @@ static const char *check_skins(const masu_bake_content *c) {
             deltas > masu_bake_count(c, MASU_BLOB_MORPH_DELTAS) - next_delta)
             return "morph targets out of range";
         for (uint32_t t = 0; t < s->target_count; t++) {
-            const masu_blob_morph_target *target =
-                &MASU_BAKE_ARRAY(c, MASU_BLOB_MORPH_TARGETS, const masu_blob_morph_target)[next_target + t];
+            const masu_blob_morph_target *target = &MASU_BAKE_ARRAY(
+                c, MASU_BLOB_MORPH_TARGETS, const masu_blob_morph_target)[next_target + t];
             const masu_blob_morph_delta *all =
-                MASU_BAKE_ARRAY(c, MASU_BLOB_MORPH_DELTAS, const masu_blob_morph_delta) + next_delta;
+                MASU_BAKE_ARRAY(c, MASU_BLOB_MORPH_DELTAS, const masu_blob_morph_delta) +
+                next_delta;
             if (!name_ok(c, target->name) ||
                 masu_wrong_morph_target(target, all + (size_t)t * s->vertex_count, s->vertex_count))
                 return "a morph target out of range";

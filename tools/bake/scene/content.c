@@ -108,10 +108,12 @@ static void pad(masu_bake_content *content, uint32_t kind, uint64_t count, int b
 void masu_bake_pad_attributes(masu_bake_content *content) {
     uint64_t count = masu_bake_count(content, MASU_BLOB_VERTICES);
     if (content->section[MASU_BLOB_COLORS].bytes) pad(content, MASU_BLOB_COLORS, count, 0xFF);
-    if (content->section[MASU_BLOB_TEXCOORDS_1].bytes) pad(content, MASU_BLOB_TEXCOORDS_1, count, 0);
+    if (content->section[MASU_BLOB_TEXCOORDS_1].bytes)
+        pad(content, MASU_BLOB_TEXCOORDS_1, count, 0);
 }
 
-static void set_attributes(masu_bake_content *content, uint64_t vertex, const masu_bake_attributes *a) {
+static void set_attributes(masu_bake_content *content, uint64_t vertex,
+                           const masu_bake_attributes *a) {
     if (a->color != MASU_BLOB_WHITE) {
         pad(content, MASU_BLOB_COLORS, vertex, 0xFF);
         masu_bake_append(&content->section[MASU_BLOB_COLORS], &a->color, sizeof a->color);
@@ -131,13 +133,16 @@ masu_bake_attributes masu_bake_attributes_of(const masu_bake_content *content, u
     if (vertex < masu_bake_count(content, MASU_BLOB_COLORS))
         a.color = MASU_BAKE_ARRAY(content, MASU_BLOB_COLORS, const uint32_t)[vertex];
     if (vertex < masu_bake_count(content, MASU_BLOB_TEXCOORDS_1))
-        memcpy(a.texcoord, MASU_BAKE_ARRAY(content, MASU_BLOB_TEXCOORDS_1, const float) + 2 * vertex,
+        memcpy(a.texcoord,
+               MASU_BAKE_ARRAY(content, MASU_BLOB_TEXCOORDS_1, const float) + 2 * vertex,
                sizeof a.texcoord);
     return a;
 }
 
-void masu_bake_copy_attributes(masu_bake_content *to, const masu_bake_content *from, uint64_t first, uint64_t count) {
-    if (!from->section[MASU_BLOB_COLORS].bytes && !from->section[MASU_BLOB_TEXCOORDS_1].bytes) return;
+void masu_bake_copy_attributes(masu_bake_content *to, const masu_bake_content *from, uint64_t first,
+                               uint64_t count) {
+    if (!from->section[MASU_BLOB_COLORS].bytes && !from->section[MASU_BLOB_TEXCOORDS_1].bytes)
+        return;
     uint64_t at = masu_bake_count(to, MASU_BLOB_VERTICES) - count;
     for (uint64_t i = 0; i < count; i++) {
         masu_bake_attributes a = masu_bake_attributes_of(from, first + i);

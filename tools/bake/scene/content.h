@@ -146,7 +146,8 @@ typedef struct masu_bake_attributes {
 void masu_bake_add_attributes(masu_bake_content *content, const masu_bake_attributes *attributes);
 masu_bake_attributes masu_bake_attributes_of(const masu_bake_content *content, uint64_t vertex);
 /* Copies the attributes of `count` vertices from `first` on to the last `count` added vertices. */
-void masu_bake_copy_attributes(masu_bake_content *to, const masu_bake_content *from, uint64_t first, uint64_t count);
+void masu_bake_copy_attributes(masu_bake_content *to, const masu_bake_content *from, uint64_t first,
+                               uint64_t count);
 void masu_bake_pad_attributes(masu_bake_content *content);
 /* `color` is linear, with alpha. */
 uint32_t masu_bake_encode_color(const float color[4]);

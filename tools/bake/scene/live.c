@@ -27,8 +27,8 @@ static bool relative(const masu_bake_affine *above, const masu_bake_affine *worl
 }
 
 /* Adds a node for each instance. */
-static void add_instances(masu_bake_content *content, const masu_bake_content *piece, uint64_t first,
-                          const masu_bake_affine *back, uint32_t first_node) {
+static void add_instances(masu_bake_content *content, const masu_bake_content *piece,
+                          uint64_t first, const masu_bake_affine *back, uint32_t first_node) {
     uint64_t count = masu_bake_count(content, MASU_BLOB_INSTANCES) - first;
     for (uint32_t i = 0; i < count; i++) {
         const masu_blob_instance *n = &MASU_BAKE_INSTANCES(content)[first + i];
@@ -39,7 +39,8 @@ static void add_instances(masu_bake_content *content, const masu_bake_content *p
                                      .name = masu_bake_name(content, text, strlen(text))};
         if (n->parent != MASU_BLOB_NONE && n->parent >= first && n->parent < first + i) {
             masu_bake_affine above = masu_bake_transform(&MASU_BAKE_INSTANCES(content)[n->parent]);
-            if (relative(&above, &world, &local)) node.parent = first_node + n->parent - (uint32_t)first;
+            if (relative(&above, &world, &local))
+                node.parent = first_node + n->parent - (uint32_t)first;
         }
         if (node.parent == MASU_BLOB_NONE) local = masu_bake_multiply(back, &world);
         store(&local, node.local);
@@ -113,7 +114,8 @@ void masu_bake_carry_lights(masu_bake_content *content, uint64_t first_light,
         if (!masu_bake_sane(moved)) continue;
         if (type == MASU_LIGHT_SPOT && !masu_bake_normalize(&ahead)) continue;
         masu_bake_store(moved, light->position);
-        if (type != MASU_LIGHT_POINT && type != MASU_LIGHT_SPHERE) masu_bake_store(ahead, light->direction);
+        if (type != MASU_LIGHT_POINT && type != MASU_LIGHT_SPHERE)
+            masu_bake_store(ahead, light->direction);
         other = masu_bake_sub(masu_bake_apply(&inverse, other), moved);
         masu_bake_store(other, light->half_axis);
         light->parent = (uint32_t)first_instance;

@@ -12,7 +12,9 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
     const masu_blob_material *x = &a->value, *y = &b->value;
     return a->base_color == b->base_color && a->roughness == b->roughness &&
            a->metallic == b->metallic && a->emissive == b->emissive && a->alpha == b->alpha &&
-           a->single == b->single && a->shadowless == b->shadowless && a->relief_of == b->relief_of && a->cutoff == b->cutoff && memcmp(a->map, b->map, sizeof a->map) == 0 &&
+           a->single == b->single && a->shadowless == b->shadowless &&
+           a->relief_of == b->relief_of && a->cutoff == b->cutoff &&
+           memcmp(a->map, b->map, sizeof a->map) == 0 &&
            memcmp(&a->maps, &b->maps, sizeof a->maps) == 0 &&
            memcmp(x->base_color, y->base_color, sizeof x->base_color) == 0 &&
            memcmp(x->emissive, y->emissive, sizeof x->emissive) == 0 &&
@@ -20,12 +22,13 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
            a->specular == b->specular && a->coat == b->coat &&
            a->coat_roughness == b->coat_roughness && x->specular == y->specular &&
            x->coat == y->coat && x->coat_roughness == y->coat_roughness && a->meso == b->meso &&
-           a->thickness == b->thickness && a->ior == b->ior && x->thickness == y->thickness && x->ior == y->ior &&
-           x->meso == y->meso && a->opacity == b->opacity && x->opacity == y->opacity &&
-           a->detail_color == b->detail_color && a->color_repeats == b->color_repeats &&
-           a->detail == b->detail && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
-           a->unlit == b->unlit && a->repeat == b->repeat && a->depth_bias == b->depth_bias && x->depth_bias == y->depth_bias &&
-           strcmp(a->match, b->match) == 0;
+           a->thickness == b->thickness && a->ior == b->ior && x->thickness == y->thickness &&
+           x->ior == y->ior && x->meso == y->meso && a->opacity == b->opacity &&
+           x->opacity == y->opacity && a->detail_color == b->detail_color &&
+           a->color_repeats == b->color_repeats && a->detail == b->detail &&
+           memcmp(x->detail, y->detail, sizeof x->detail) == 0 && a->unlit == b->unlit &&
+           a->repeat == b->repeat && a->depth_bias == b->depth_bias &&
+           x->depth_bias == y->depth_bias && strcmp(a->match, b->match) == 0;
 }
 
 bool masu_bake_overrides_equal(const masu_bake_overrides *a, const masu_bake_overrides *b) {
@@ -51,7 +54,8 @@ static bool matches(const masu_bake_content *piece, uint32_t index, const masu_b
     return fnmatch(o->match, last_part(path), 0) == 0;
 }
 
-bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_override *override) {
+bool masu_bake_override_matches(const masu_bake_content *piece,
+                                const masu_bake_override *override) {
     for (uint32_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MATERIALS); i++) {
         if (matches(piece, i, override)) return true;
     }
@@ -162,7 +166,8 @@ static void scale_all(masu_blob_material *to, masu_bake_maps *maps, float scale[
     }
 }
 
-static bool color_repeats(const masu_bake_content *piece, uint32_t index, const masu_bake_overrides *overrides) {
+static bool color_repeats(const masu_bake_content *piece, uint32_t index,
+                          const masu_bake_overrides *overrides) {
     bool repeats = false;
     for (size_t i = 0; i < overrides->count; i++) {
         const masu_bake_override *o = &overrides->items[i];
@@ -171,7 +176,8 @@ static bool color_repeats(const masu_bake_content *piece, uint32_t index, const 
     return repeats;
 }
 
-static bool any_color_repeats(const masu_bake_content *piece, const masu_bake_overrides *overrides) {
+static bool any_color_repeats(const masu_bake_content *piece,
+                              const masu_bake_overrides *overrides) {
     for (uint32_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MATERIALS); i++) {
         if (color_repeats(piece, i, overrides)) return true;
     }
@@ -179,7 +185,8 @@ static bool any_color_repeats(const masu_bake_content *piece, const masu_bake_ov
 }
 
 static uint32_t placed_material(masu_bake_content *scene, const masu_bake_content *piece,
-                                uint32_t index, const masu_bake_overrides *overrides, float scale[2]) {
+                                uint32_t index, const masu_bake_overrides *overrides,
+                                float scale[2]) {
     masu_blob_material material = MASU_BAKE_MATERIALS(piece)[index];
     const char *name = masu_bake_name_text(piece, material.name);
     masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
@@ -220,11 +227,13 @@ static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *p
 
 /* Scales the coordinates of a copied primitive. `by`: for each vertex of the piece, the material
  * that has scaled it, from 1. Returns NULL or the error. */
-static const char *scale_coordinates(masu_bake_content *scene, const masu_blob_primitive *p, uint32_t first_vertex,
-                                     uint32_t material, const float scale[2], uint32_t *by) {
+static const char *scale_coordinates(masu_bake_content *scene, const masu_blob_primitive *p,
+                                     uint32_t first_vertex, uint32_t material, const float scale[2],
+                                     uint32_t *by) {
     static const uint32_t kinds[2] = {MASU_BLOB_TEXCOORDS, MASU_BLOB_TEXCOORDS_1};
     for (uint32_t v = p->first_vertex; v < p->first_vertex + p->vertex_count; v++) {
-        if (by[v] && by[v] != material + 1) return "vertices of two materials, which \"detail_color\" cannot scale";
+        if (by[v] && by[v] != material + 1)
+            return "vertices of two materials, which \"detail_color\" cannot scale";
         for (int set = 0; set < 2 && !by[v]; set++) {
             size_t vertex = (size_t)first_vertex + v;
             if (vertex >= masu_bake_count(scene, kinds[set])) continue;
@@ -257,7 +266,8 @@ static const char *place_meshes(masu_bake_content *scene, const masu_bake_conten
     }
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_PRIMITIVES); i++) {
         masu_blob_primitive p = MASU_BAKE_PRIMITIVES(piece)[i];
-        if (by && !problem) problem = scale_coordinates(scene, &p, first_vertex, p.material, scale[p.material], by);
+        if (by && !problem)
+            problem = scale_coordinates(scene, &p, first_vertex, p.material, scale[p.material], by);
         p.first_index += first_index;
         p.first_vertex += first_vertex;
         p.material = material_map[p.material];
@@ -321,7 +331,8 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
          * indices. */
         uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
         first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
-        problem = place_meshes(scene, piece, residence->first_vertex, first_index, overrides, scaled);
+        problem =
+            place_meshes(scene, piece, residence->first_vertex, first_index, overrides, scaled);
         if (problem) return problem;
         residence->first_mesh = first_mesh;
         residence->has_meshes = true;
@@ -368,7 +379,8 @@ double masu_bake_area_range(const masu_blob_light *light) {
     }
     if (type == MASU_LIGHT_CAPSULE) area += 4 * r * length, size += length;
     masu_bake_vec3 color = masu_bake_v3f(light->color), zero = {0, 0, 0};
-    return fmax(6 * masu_bake_light_range(masu_bake_mad(zero, color, area / MASU_BAKE_PI)), 8 * size);
+    return fmax(6 * masu_bake_light_range(masu_bake_mad(zero, color, area / MASU_BAKE_PI)),
+                8 * size);
 }
 
 /* Transforms a light to another space. False: its values are out of range. */

@@ -13,7 +13,8 @@ typedef struct masu_bake_override {
     masu_blob_material value;
     bool base_color, roughness, metallic, emissive, specular, coat, coat_roughness, meso;
     masu_bake_maps maps; /* images of the scene, by the scene's indices */
-    bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity, single, relief_of, shadowless, thickness, ior;
+    bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity, single, relief_of, shadowless,
+        thickness, ior;
     bool unlit, depth_bias, repeat;
     /* whether "the detail includes colour and emission" is specified; its value */
     bool detail_color, color_repeats;

@@ -87,9 +87,11 @@ void masu_bake_add_skins(masu_bake_content *content, const masu_bake_content *pi
                                            skin.target_count);
             for (uint32_t t = 0; t < skin.target_count; t++) {
                 const char *text = masu_bake_name_text(
-                    piece, MASU_BAKE_ARRAY(piece, MASU_BLOB_MORPH_TARGETS, masu_blob_morph_target)[first_target + t].name);
-                MASU_BAKE_ARRAY(content, MASU_BLOB_MORPH_TARGETS, masu_blob_morph_target)[skin.first_target + t].name =
-                    masu_bake_name(content, text, strlen(text));
+                    piece, MASU_BAKE_ARRAY(piece, MASU_BLOB_MORPH_TARGETS,
+                                           masu_blob_morph_target)[first_target + t]
+                               .name);
+                MASU_BAKE_ARRAY(content, MASU_BLOB_MORPH_TARGETS, masu_blob_morph_target)
+                [skin.first_target + t].name = masu_bake_name(content, text, strlen(text));
             }
             skin.first_delta = copy_range(content, piece, MASU_BLOB_MORPH_DELTAS, skin.first_delta,
                                           skin.vertex_count * skin.target_count);

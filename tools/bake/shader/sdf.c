@@ -126,7 +126,8 @@ static bool has_terms(const masu_bake_buffer *text) {
     static const char line[] = "#define MASU_SDF_TERMS";
     const char *data = (const char *)text->data;
     for (size_t i = 0; i + sizeof line <= text->bytes; i++) {
-        if (memcmp(data + i, line, sizeof line - 1) == 0 && (i == 0 || data[i - 1] == '\n')) return true;
+        if (memcmp(data + i, line, sizeof line - 1) == 0 && (i == 0 || data[i - 1] == '\n'))
+            return true;
     }
     return false;
 }
@@ -173,8 +174,9 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
         masu_bake_release(&own);
         return false;
     }
-    masu_sdfc_options options = {
-        .anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->flags & MASU_SDF_ANCHORED};
+    masu_sdfc_options options = {.anchored =
+                                     MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->flags &
+                                     MASU_SDF_ANCHORED};
     masu_sdfc_camera *cameras = path_of(content, &options.camera_count);
     options.cameras = cameras;
     good = masu_sdfc_compile_with((const char *)own.data, own.bytes, path, &options, scene, error,
@@ -226,7 +228,8 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
             append_scene_header(&text, content, glsl_path);
             masu_bake_append(&text, own.data, own.bytes);
             masu_bake_append_text(&text, "\n");
-            masu_bake_append_text(&text, terms ? "#define MASU_SDF_TERMS_FOUND 1\n" : "#define MASU_SDF_TERMS_FOUND 0\n");
+            masu_bake_append_text(&text, terms ? "#define MASU_SDF_TERMS_FOUND 1\n"
+                                               : "#define MASU_SDF_TERMS_FOUND 0\n");
             masu_bake_append_text(&text, "#include \"sdf/hand_written.glsl\"\n");
             static const float no_slot = 0.0f;
             masu_bake_append(&content->section[MASU_BLOB_SLOTS], &no_slot, sizeof no_slot);
@@ -331,11 +334,13 @@ static bool put_record(const char *path, const masu_module_counts *counts, const
     char text[MASU_MODULE_RECORD_BYTES];
     bool good = masu_bake_read_file(path, SPIRV_MAX, &words);
     if (good) {
-        size_t place = 4 * (size_t)masu_module_record_place((const uint32_t *)(const void *)words.data, words.bytes / 4);
+        size_t place = 4 * (size_t)masu_module_record_place(
+                               (const uint32_t *)(const void *)words.data, words.bytes / 4);
         masu_module_record(counts, text);
         memcpy(record + 1, text, sizeof text);
         masu_bake_append(&words, NULL, sizeof record);
-        memmove(words.data + place + sizeof record, words.data + place, words.bytes - sizeof record - place);
+        memmove(words.data + place + sizeof record, words.data + place,
+                words.bytes - sizeof record - place);
         memcpy(words.data + place, record, sizeof record);
         FILE *file = fopen(path, "wb");
         good = file && fwrite(words.data, 1, words.bytes, file) == words.bytes;
@@ -364,9 +369,15 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                    p->define, /* NULL ends the list */
                                    NULL};
     const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
-    const char *const optimise[] = {
-        "spirv-opt", "--target-env=vulkan1.1", "-O", "--strip-debug", "--compact-ids", p->raw, "-o", p->optimised,
-        NULL};
+    const char *const optimise[] = {"spirv-opt",
+                                    "--target-env=vulkan1.1",
+                                    "-O",
+                                    "--strip-debug",
+                                    "--compact-ids",
+                                    p->raw,
+                                    "-o",
+                                    p->optimised,
+                                    NULL};
     const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.1", p->optimised, NULL};
     const struct {
         const char *const *arguments;
@@ -443,15 +454,16 @@ static const struct {
      MASU_BLOB_CHECKERBOARD_SPIRV, VARIANT},
 #endif
     {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION},
-    {"local_shadow_sdf.comp", NULL, "faces.raw", "faces.spv", MASU_BLOB_LOCAL_SHADOW_SPIRV, LOCAL_SHADOWS},
+    {"local_shadow_sdf.comp", NULL, "faces.raw", "faces.spv", MASU_BLOB_LOCAL_SHADOW_SPIRV,
+     LOCAL_SHADOWS},
     {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
      REFLECTED_STILL},
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", "mirror.raw", "mirror.spv",
      MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC},
     {"bounce_sdf.comp", NULL, "bounce.raw", "bounce.spv", MASU_BLOB_BOUNCE_SDF_SPIRV, BOUNCED}};
 
-static bool wanted(int when, bool moves, bool dynamic, bool anchored, bool occlusion, bool casts, bool reflected,
-                   bool bounced, bool variants) {
+static bool wanted(int when, bool moves, bool dynamic, bool anchored, bool occlusion, bool casts,
+                   bool reflected, bool bounced, bool variants) {
     if (when == MOVES) return moves;
     if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
@@ -526,7 +538,8 @@ static bool surface_reads_time(const paths *p) {
     bool time = true;
     if (run_quietly(compile) && run_quietly(optimise) &&
         masu_bake_read_file(p->optimised, SPIRV_MAX, &spirv))
-        time = masu_bake_try_reads((const uint32_t *)(const void *)spirv.data, spirv.bytes / 4).time;
+        time =
+            masu_bake_try_reads((const uint32_t *)(const void *)spirv.data, spirv.bytes / 4).time;
     masu_bake_release(&spirv);
     return time;
 }
@@ -552,13 +565,15 @@ static bool decide_moves(const masu_bake_content *content, const masu_sdfc_resul
     *moves = reads.time || param || part;
     if (!is_static || !*moves) return true;
     if (part)
-        masu_cli_error("%s: declared \"static\", but part %s depends on time or on a parameter", path,
-                       part->name);
+        masu_cli_error("%s: declared \"static\", but part %s depends on time or on a parameter",
+                       path, part->name);
     else if (reads.time)
         masu_cli_error("%s: declared \"static\", but the field reads masu_time()", path);
     else
-        masu_cli_error("%s: declared \"static\", but the field reads the parameter \"%s\" or another "
-                       "that may change (min < max)", path, param);
+        masu_cli_error(
+            "%s: declared \"static\", but the field reads the parameter \"%s\" or another "
+            "that may change (min < max)",
+            path, param);
     return false;
 }
 
@@ -613,7 +628,8 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
 /* Lights that a program adds to other scenes have no SDF shadows: these are not compiled for
  * them. */
 static bool any_light_casts(const masu_bake_content *content) {
-    const masu_blob_light *lights = MASU_BAKE_ARRAY(content, MASU_BLOB_LIGHTS, const masu_blob_light);
+    const masu_blob_light *lights =
+        MASU_BAKE_ARRAY(content, MASU_BLOB_LIGHTS, const masu_blob_light);
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_LIGHTS); i++) {
         if (!(lights[i].type & MASU_LIGHT_NO_SHADOW)) return true;
     }
@@ -621,8 +637,8 @@ static bool any_light_casts(const masu_bake_content *content) {
 }
 
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool is_static, bool reflected, bool bounced,
-                             bool variants) {
+                             const masu_bake_occlusion *occlusion, bool is_static, bool reflected,
+                             bool bounced, bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
@@ -637,8 +653,10 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
     bool good = lay_out(directory, content, glsl_path, &dynamic, &scene) &&
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
-        bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->flags & MASU_SDF_ANCHORED;
-        if (!wanted(scene_shaders[i].when, moves, dynamic, anchored, darkens, casts, reflected, bounced, variants))
+        bool anchored =
+            MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->flags & MASU_SDF_ANCHORED;
+        if (!wanted(scene_shaders[i].when, moves, dynamic, anchored, darkens, casts, reflected,
+                    bounced, variants))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),
@@ -649,12 +667,13 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                    strrchr(scene_shaders[i].source, '.') + 1};
         const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
         const masu_module_counts counts = {.kind = scene_shaders[i].kind,
-                                         .parts = sdf->part_count,
-                                         .slots = (uint32_t)masu_bake_count(content, MASU_BLOB_SLOTS),
-                                         .block_words = sdf->block_words,
-                                         .raster = has_raster,
-                                         .anchored = sdf->flags & MASU_SDF_ANCHORED,
-                                         .moves = dynamic};
+                                           .parts = sdf->part_count,
+                                           .slots =
+                                               (uint32_t)masu_bake_count(content, MASU_BLOB_SLOTS),
+                                           .block_words = sdf->block_words,
+                                           .raster = has_raster,
+                                           .anchored = sdf->flags & MASU_SDF_ANCHORED,
+                                           .moves = dynamic};
         good = run_tools(&p, has_raster, directory, glsl_path, &counts) &&
                take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path) &&
                (i > 0 ||

@@ -28,8 +28,8 @@ typedef struct masu_bake_occlusion {
  * that does neither is static without the declaration: the blob then has no VELOCITY_SPIRV. Errors
  * have the name and line numbers of the GLSL. */
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool is_static, bool reflected, bool bounced,
-                             bool variants);
+                             const masu_bake_occlusion *occlusion, bool is_static, bool reflected,
+                             bool bounced, bool variants);
 
 /* True if a source is a file in the language of docs/sdf.md. */
 bool masu_bake_is_sdf(const char *path);

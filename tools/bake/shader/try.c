@@ -459,11 +459,11 @@ static bool try_parts(trial *t) {
     }
     if (!try_cameras(t)) return false;
     if (t->least_portion < 1 && !t->text[0]) {
-        snprintf(
-            t->text, sizeof t->text,
-            "W%u forms of parts with glsl share a limit of %.0e instructions: some were tested at %.2g %% of "
-            "the points",
-            forms, WORK_MAX, 100 * t->least_portion);
+        snprintf(t->text, sizeof t->text,
+                 "W%u forms of parts with glsl share a limit of %.0e instructions: some were "
+                 "tested at %.2g %% of "
+                 "the points",
+                 forms, WORK_MAX, 100 * t->least_portion);
     }
     return true;
 }
@@ -486,10 +486,10 @@ static void body(void *argument, int fd) {
         for (uint32_t i = 0; t->slots && i < t->scene->slot_count; i++)
             t->slots[i].f = (double)t->scene->slots[i];
         if (try_parts(t) && t->measures && t->jumps_by > 0)
-            snprintf(
-                t->text, sizeof t->text,
-                "Ethe field jumps by %.3g at (%.6g, %.6g, %.6g): \"lipschitz\": \"auto\" needs a continuous field",
-                t->jumps_by, t->jump[0], t->jump[1], t->jump[2]);
+            snprintf(t->text, sizeof t->text,
+                     "Ethe field jumps by %.3g at (%.6g, %.6g, %.6g): \"lipschitz\": \"auto\" "
+                     "needs a continuous field",
+                     t->jumps_by, t->jump[0], t->jump[1], t->jump[2]);
         else if (t->measures && !t->text[0])
             snprintf(t->text, sizeof t->text, "S%.17g", t->steepest);
         free(t->sites);

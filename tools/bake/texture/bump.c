@@ -32,7 +32,8 @@ bool masu_bump_is_height(const uint8_t *rgba, uint32_t width, uint32_t height, i
         normal += is_normal(rgba + 4 * i);
     }
     if ((double)grey >= GREY_SHARE * (double)texels) return true;
-    return relief == MASU_BAKE_RELIEF_NAMED_HEIGHTS && (double)normal < NORMAL_SHARE * (double)texels;
+    return relief == MASU_BAKE_RELIEF_NAMED_HEIGHTS &&
+           (double)normal < NORMAL_SHARE * (double)texels;
 }
 
 static double luminance(const uint8_t *t) {
@@ -50,12 +51,15 @@ void masu_bump_normals(const uint8_t *rgba, uint32_t width, uint32_t height, dou
                        const bool clamped[2], float *normals) {
     double scale = strength * MASU_BUMP_HEIGHT * (width > height ? width : height) / 8;
     for (uint32_t y = 0; y < height; y++) {
-        const uint32_t rows[3] = {neighbour(y, height, -1, clamped[1]), y, neighbour(y, height, 1, clamped[1])};
+        const uint32_t rows[3] = {neighbour(y, height, -1, clamped[1]), y,
+                                  neighbour(y, height, 1, clamped[1])};
         for (uint32_t x = 0; x < width; x++) {
-            const uint32_t columns[3] = {neighbour(x, width, -1, clamped[0]), x, neighbour(x, width, 1, clamped[0])};
+            const uint32_t columns[3] = {neighbour(x, width, -1, clamped[0]), x,
+                                         neighbour(x, width, 1, clamped[0])};
             double h[3][3];
             for (int j = 0; j < 3; j++) {
-                for (int i = 0; i < 3; i++) h[j][i] = luminance(rgba + 4 * ((size_t)rows[j] * width + columns[i]));
+                for (int i = 0; i < 3; i++)
+                    h[j][i] = luminance(rgba + 4 * ((size_t)rows[j] * width + columns[i]));
             }
             double u = (h[0][2] + 2 * h[1][2] + h[2][2] - h[0][0] - 2 * h[1][0] - h[2][0]) * scale;
             double up = (h[0][0] + 2 * h[0][1] + h[0][2] - h[2][0] - 2 * h[2][1] - h[2][2]) * scale;

@@ -188,7 +188,8 @@ static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
         complain(wand, fd);
         return;
     }
-    for (size_t i = 0; i < w * h && (solid || !MagickGetImageAlphaChannel(wand)); i++) texels[4 * i + 3] = 255;
+    for (size_t i = 0; i < w * h && (solid || !MagickGetImageAlphaChannel(wand)); i++)
+        texels[4 * i + 3] = 255;
     head answer = {(uint32_t)w, (uint32_t)h, {0, 0}, bits > 8 ? (uint32_t)bits : 0};
     if (width > MASU_TEXTURE_SIZE_MAX || height > MASU_TEXTURE_SIZE_MAX) {
         answer.whole[0] = (uint32_t)width;

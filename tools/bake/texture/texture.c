@@ -219,7 +219,8 @@ static void finish(texture *t, float *level, float *normals) {
 /* The meaning of alpha if the model does not specify it: none if no texel is below the cut-off;
  * else a mask, if the texture looks like one. Never blending: it costs a draw per object and needs
  * an order, which meshes with many leaves do not have. */
-static uint8_t judge_alpha(const maker *m, const request *wanted, const float *level, size_t texels) {
+static uint8_t judge_alpha(const maker *m, const request *wanted, const float *level,
+                           size_t texels) {
     uint64_t below = 0, less = 0, histogram[256] = {0};
     uint8_t meant = wanted->alpha;
     for (size_t i = 0; i < texels; i++) {
@@ -231,7 +232,8 @@ static uint8_t judge_alpha(const maker *m, const request *wanted, const float *l
     if (meant == MASU_BAKE_ALPHA_OPAQUE || !less) return MASU_BAKE_ALPHA_OPAQUE;
     if (meant == MASU_BAKE_ALPHA_MASK || meant == MASU_BAKE_ALPHA_BLEND) return meant;
     if (!below) return MASU_BAKE_ALPHA_OPAQUE;
-    if (meant == MASU_BAKE_ALPHA_COVERS || masu_mask_is_meant(histogram, masu_texel_to_unorm(wanted->cutoff)))
+    if (meant == MASU_BAKE_ALPHA_COVERS ||
+        masu_mask_is_meant(histogram, masu_texel_to_unorm(wanted->cutoff)))
         return MASU_BAKE_ALPHA_MASK;
     if (!m->sizes) {
         masu_cli_warn("texture %s: its alpha is not a mask (%.0f %% of it is below the cut-off): "
@@ -257,7 +259,9 @@ static void make_color(maker *m, texture *t) {
     if (has_color || has_opacity) {
         const masu_bake_picture *size = has_color ? &color : &opacity;
         uint32_t w = size->width, h = size->height;
-        uint32_t channel = t->wanted.apart ? t->wanted.channel[1] : has_opacity ? opacity_channel(&opacity) : 0;
+        uint32_t channel = t->wanted.apart ? t->wanted.channel[1]
+                           : has_opacity   ? opacity_channel(&opacity)
+                                           : 0;
         float *level = allocate_level(w, h), linear[256];
         for (int i = 0; i < 256; i++) linear[i] = masu_texel_from_srgb((uint8_t)i);
         for (uint32_t y = 0; y < h; y++) {
@@ -267,18 +271,21 @@ static void make_color(maker *m, texture *t) {
                     to[k] = has_color ? linear[byte_at(&color, x, y, w, h, k)] : 1;
                 }
                 to[3] = has_opacity ? (float)byte_at(&opacity, x, y, w, h, channel) / 255.0f
-                        : has_color && !t->wanted.apart ? (float)byte_at(&color, x, y, w, h, 3) / 255.0f
-                                    : 1;
+                        : has_color && !t->wanted.apart
+                            ? (float)byte_at(&color, x, y, w, h, 3) / 255.0f
+                            : 1;
             }
         }
         size_t texels = (size_t)w * h;
         request judged = t->wanted;
         /* A separate opacity image is meant as opacity. */
-        if (has_opacity && judged.alpha == MASU_BAKE_ALPHA_AUTO) judged.alpha = MASU_BAKE_ALPHA_COVERS;
+        if (has_opacity && judged.alpha == MASU_BAKE_ALPHA_AUTO)
+            judged.alpha = MASU_BAKE_ALPHA_COVERS;
         /* Nothing uses the alpha of an emission map. */
         if (judged.slot != MASU_SLOT_BASE) judged.alpha = MASU_BAKE_ALPHA_OPAQUE;
         t->alpha = judge_alpha(m, &judged, level, texels);
-        bool opaque = t->wanted.slot == MASU_SLOT_BASE ? t->alpha == MASU_BAKE_ALPHA_OPAQUE : !has_opacity;
+        bool opaque =
+            t->wanted.slot == MASU_SLOT_BASE ? t->alpha == MASU_BAKE_ALPHA_OPAQUE : !has_opacity;
         begin(t, opaque ? MASU_TEXTURE_BC1_SRGB : MASU_TEXTURE_BC3_SRGB, w, h);
         finish(t, level, NULL);
         free(level);
@@ -288,10 +295,12 @@ static void make_color(maker *m, texture *t) {
 }
 
 /* Converts heights to the normals of a map of this size. */
-static float *bump_level(const masu_bake_picture *p, const request *wanted, uint32_t w, uint32_t h) {
+static float *bump_level(const masu_bake_picture *p, const request *wanted, uint32_t w,
+                         uint32_t h) {
     const bool clamped[2] = {wanted->clamped[0] != 0, wanted->clamped[1] != 0};
     float *own = allocate_level(p->width, p->height);
-    masu_bump_normals(p->rgba.data, p->width, p->height, (double)wanted->normal_scale, clamped, own);
+    masu_bump_normals(p->rgba.data, p->width, p->height, (double)wanted->normal_scale, clamped,
+                      own);
     if (w == p->width && h == p->height) return own;
     float *level = allocate_level(w, h);
     for (size_t i = 0; i < (size_t)w * h; i++) {
@@ -303,7 +312,8 @@ static float *bump_level(const masu_bake_picture *p, const request *wanted, uint
 }
 
 /* Reads normals, or converts heights, for a map of this size. */
-static float *normal_level(const masu_bake_picture *p, const request *wanted, uint32_t w, uint32_t h) {
+static float *normal_level(const masu_bake_picture *p, const request *wanted, uint32_t w,
+                           uint32_t h) {
     float scale = wanted->normal_scale;
     if (masu_bump_is_height(p->rgba.data, p->width, p->height, wanted->relief))
         return bump_level(p, wanted, w, h);
@@ -362,7 +372,8 @@ static void make_surface(maker *m, texture *t) {
             normals = normal_level(&p[2], &t->wanted, w, h);
             t->absolute = true;
         }
-        begin(t, has[1] || t->wanted.slot == MASU_SLOT_COAT ? MASU_TEXTURE_BC5 : MASU_TEXTURE_BC4, w, h);
+        begin(t, has[1] || t->wanted.slot == MASU_SLOT_COAT ? MASU_TEXTURE_BC5 : MASU_TEXTURE_BC4,
+              w, h);
         finish(t, level, normals);
         free(normals);
         free(level);
@@ -411,7 +422,8 @@ static void ask_for_normals(request *r, uint32_t which, const masu_bake_maps *ma
 }
 
 /* base: its texture, or NONE. A material that may be blended but is opaque everywhere is not. */
-static bool is_blended(const maker *m, const masu_bake_maps *maps, const masu_blob_material *material, uint32_t base) {
+static bool is_blended(const maker *m, const masu_bake_maps *maps,
+                       const masu_blob_material *material, uint32_t base) {
     if (maps->alpha == MASU_BAKE_ALPHA_BLEND &&
         (maps->additive || material->opacity < 0.999f || maps->colored == MASU_BAKE_COLORED_ALPHA))
         return true;
@@ -421,10 +433,12 @@ static bool is_blended(const maker *m, const masu_bake_maps *maps, const masu_bl
 
 /* A clear coat has a separate normal map, in addition to the base's, in the slot of an emission
  * map. */
-static bool has_coat_relief(const maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
+static bool has_coat_relief(const maker *m, const masu_bake_maps *maps,
+                            const masu_blob_material *material,
                             const uint32_t slots[MASU_SLOT_COUNT]) {
-    return maps->image[MASU_BAKE_COAT_NORMAL] != MASU_BLOB_NONE && maps->image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE &&
-           material->coat > 0 && slots[MASU_SLOT_NORMAL] != MASU_BLOB_NONE &&
+    return maps->image[MASU_BAKE_COAT_NORMAL] != MASU_BLOB_NONE &&
+           maps->image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE && material->coat > 0 &&
+           slots[MASU_SLOT_NORMAL] != MASU_BLOB_NONE &&
            !is_blended(m, maps, material, slots[MASU_SLOT_BASE]);
 }
 
@@ -454,7 +468,8 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             r.channel[1] = maps->channel[MASU_BAKE_METALLIC];
             r.gloss = maps->gloss;
             /* A normal map without a roughness map also makes one, unless the roughness is 1. */
-            if (maps->image[MASU_BAKE_NORMAL] != MASU_BLOB_NONE && maps->relief_of != MASU_BAKE_RELIEF_OF_COAT &&
+            if (maps->image[MASU_BAKE_NORMAL] != MASU_BLOB_NONE &&
+                maps->relief_of != MASU_BAKE_RELIEF_OF_COAT &&
                 (r.image[0] != MASU_BLOB_NONE || material->roughness < 0.99f)) {
                 ask_for_normals(&r, 2, maps);
                 r.roughness = material->roughness;
@@ -468,11 +483,13 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
         case MASU_SLOT_COAT:
             if (!(material->coat > 0) && !masu_lobe_code(material)) break;
             if (is_blended(m, maps, material, out[MASU_SLOT_BASE])) {
-                if (!m->sizes && (maps->image[MASU_BAKE_COAT] & maps->image[MASU_BAKE_COAT_ROUGHNESS] &
-                                  maps->image[MASU_BAKE_LOBE_COLOR] & maps->image[MASU_BAKE_LOBE_STRENGTH]) != MASU_BLOB_NONE)
-                    masu_cli_warn(
-                        "material \"%s\": transparent materials have no maps of coat, specular or sheen: ignored",
-                        masu_bake_name_text(m->content, material->name));
+                if (!m->sizes &&
+                    (maps->image[MASU_BAKE_COAT] & maps->image[MASU_BAKE_COAT_ROUGHNESS] &
+                     maps->image[MASU_BAKE_LOBE_COLOR] & maps->image[MASU_BAKE_LOBE_STRENGTH]) !=
+                        MASU_BLOB_NONE)
+                    masu_cli_warn("material \"%s\": transparent materials have no maps of coat, "
+                                  "specular or sheen: ignored",
+                                  masu_bake_name_text(m->content, material->name));
                 break;
             }
             if (!(material->coat > 0)) {
@@ -592,7 +609,9 @@ static uint32_t set_of(masu_bake_content *c, const masu_blob_texture_set *set) {
 static void point(maker *m, masu_blob_material *material, const masu_bake_maps *maps,
                   const uint32_t slots[MASU_SLOT_COUNT]) {
     masu_blob_texture_set set = {.wrap = {maps->wrap[0] + 4u * maps->nearest, maps->wrap[1]}};
-    uint32_t flags = is_blended(m, maps, material, slots[MASU_SLOT_BASE]) ? MASU_MATERIAL_IS_BLEND : 0, layers = 0;
+    uint32_t flags =
+                 is_blended(m, maps, material, slots[MASU_SLOT_BASE]) ? MASU_MATERIAL_IS_BLEND : 0,
+             layers = 0;
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
         set.texture[slot] = MASU_BLOB_NONE;
         if (slots[slot] == MASU_BLOB_NONE) continue;
@@ -625,9 +644,10 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     }
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
     if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
-    if (material->thickness > 0 &&
-        (!(flags & MASU_MATERIAL_IS_TINTED) || flags & MASU_MATERIAL_HAS_METAL || material->metallic > 0)) {
-        masu_cli_warn("material \"%s\": its thickness is ignored: it is metallic, or not blended as \"tinted\"",
+    if (material->thickness > 0 && (!(flags & MASU_MATERIAL_IS_TINTED) ||
+                                    flags & MASU_MATERIAL_HAS_METAL || material->metallic > 0)) {
+        masu_cli_warn("material \"%s\": its thickness is ignored: it is metallic, or not blended "
+                      "as \"tinted\"",
                       masu_bake_name_text(m->content, material->name));
         material->thickness = material->ior = 0;
     }
@@ -644,7 +664,8 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     /* Blended materials have no room for it, and no maps of the second coordinates
      * (gltf_material.c). */
     uint32_t second = flags & MASU_MATERIAL_HAS_MAPS;
-    if (!(flags & MASU_MATERIAL_IS_BLEND) && flags & MASU_MATERIAL_COAT_RELIEF) second |= 1u << MASU_SLOT_EMISSIVE;
+    if (!(flags & MASU_MATERIAL_IS_BLEND) && flags & MASU_MATERIAL_COAT_RELIEF)
+        second |= 1u << MASU_SLOT_EMISSIVE;
     material->more_layers |= (maps->second & second) << 16;
     material->texture_set = set_of(m->content, &set);
 }
