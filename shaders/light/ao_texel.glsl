@@ -2,7 +2,7 @@
  * ao_texel.glsl: shared by ao.comp and ao_upsample.comp: view space, and the texel format between
  * them.
  *
- * Of the depth's 31 bits without its sign the upper 22 are stored: 14 of the mantissa, so a view z
+ * The upper 22 of the depth's 31 bits without the sign are stored: 14 of the mantissa, so a view z
  * has a relative error of at most 1 / 32768, a thirtieth of a pixel's width at 1080 lines. The
  * other ten hold the visibility in steps of 1 / 1023. An orthographic camera is a narrow lens far
  * behind its near plane; there 1 - depth is stored, and the error is that share of the distance

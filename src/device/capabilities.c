@@ -5,6 +5,7 @@
 #include "device/ray_query.h"
 #include "device/shaders.h"
 #include "plan/buffer_plan.h"
+#include "quality/device_class.h"
 #include "quality/ladder.h"
 
 #include <stddef.h>
@@ -326,8 +327,7 @@ static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan,
 /* The pass has 54 values for each thread to keep: 576 bytes or more of scratch on Mali and the
  * Raspberry Pi, at 5.7 times the cycles of EASU a pixel on a Mali-G610 (design/15-fsr1.md). */
 static int spills_easu_twice(const VkPhysicalDeviceProperties *d) {
-    enum { ARM = 0x13B5, BROADCOM = 0x14E4 };
-    return d->vendorID == ARM || d->vendorID == BROADCOM;
+    return d->vendorID == MASU_VENDOR_ARM || d->vendorID == MASU_VENDOR_BROADCOM;
 }
 
 masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,

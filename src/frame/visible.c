@@ -7,8 +7,8 @@
  *
  * Each LOD of a mesh, including the mesh itself, has separate draws and a list with space for all
  * instances: the start of each list is recorded. A visible instance is in one list. The LOD depends
- * only on the camera and the instance's transform: it is the same in each view, with any culling. So
- * all views are culled first, and one pass over the instances then fills their lists.
+ * only on the camera and the instance's transform: it is the same in each view, with any culling.
+ * So all views are culled first, and one pass over the instances then fills their lists.
  *
  * firstInstance is always 0, since other values would need the feature drawIndirectFirstInstance: a
  * draw reads the start of its list from push constants. All primitives of a mesh share one list.
@@ -85,9 +85,10 @@ void masu_visible_write_scene(const masu_device *device, const masu_draws *draws
 
 _Static_assert(sizeof(struct masu_instance_data) == 12 * sizeof(float), "three rows of four");
 
-/* Lower bound of the depth of an instance's box in the image: the depth of its nearest corner, or the
- * distance of the box times the cosine of the widest angle, whichever is larger. The latter also
- * handles casters next to or behind the camera. A box that contains the camera has the finest LOD. */
+/* The LOD of an instance, by a lower bound of the depth of its box in the image: the depth of the
+ * nearest corner, or the distance of the box times the cosine of the widest angle, whichever is
+ * larger. The latter also handles casters next to or behind the camera. A box that contains the
+ * camera has the finest LOD. */
 static uint32_t level_of(const masu_visible *s, const masu_lod_view *view,
                          const masu_bounds *bounds, const masu_instances *in,
                          const masu_batch *mesh, uint32_t instance) {

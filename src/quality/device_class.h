@@ -5,6 +5,16 @@
 
 #include <vulkan/vulkan_core.h>
 
+/* VkPhysicalDeviceProperties.vendorID: PCI ids. */
+enum {
+    MASU_VENDOR_AMD = 0x1002,
+    MASU_VENDOR_INTEL = 0x8086,
+    MASU_VENDOR_QUALCOMM = 0x5143,
+    MASU_VENDOR_ARM = 0x13B5,
+    MASU_VENDOR_BROADCOM = 0x14E4,
+    MASU_VENDOR_IMAGINATION = 0x1010
+};
+
 typedef enum masu_device_class {
     MASU_DEVICE_OTHER, /* CPUs, and GPUs without a class */
     MASU_DEVICE_XE80,
@@ -16,7 +26,7 @@ typedef enum masu_device_class {
 } masu_device_class;
 
 /* The class with the instruction set of the device, or with the next older one. Mali and PowerVR
- * use the class of Adreno, because no compiler for these was available. A class describes the
+ * use the class of Adreno, because no costs were computed for them. A class describes the
  * relative costs of passes, not speed: discrete GPUs with the same instruction set belong to it
  * too. */
 masu_device_class masu_device_class_of(const VkPhysicalDeviceProperties *device);

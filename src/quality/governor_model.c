@@ -16,7 +16,8 @@
 #define NOISE_FIRST 0.02
 /* Samples in the mean of the noise: a second at 60 Hz. */
 #define NOISE_WINDOW 64u
-/* Of the first time: initial fixed cost and its deviation. */
+/* Fixed cost that is assumed before the first sample, and its deviation, as fractions of the first
+ * frame time. */
 #define FIXED_PRIOR 0.1
 /* Relative deviation of the slope of the load per frame, while the load changes. Fitted to the
  * simulated loads: less lags in sines of 50 frames, more follows the noise. */
@@ -39,10 +40,12 @@
 /* Below the least plausible time: likely a stopped timer. 1.5 s at 60 Hz. */
 #define LIE_COUNT 90u
 #define GATE 3.0 /* deviations: samples farther away are outliers, one of 370 of white noise; */
-/* Of the prediction: samples within this fraction are no outliers. Ordinary changes of load. */
+/* Samples that differ from the prediction by at most this fraction of it are no outliers: the load
+ * often changes as much. */
 #define GATE_LEAST 0.2
 #define ODD_AGREE 1.5 /* factor within which two outliers agree */
-/* Of the first time after a rise: less shows a clock that follows. Steady loads differ less. */
+/* After a rise, a time below this fraction of the first one shows a clock that follows the load.
+ * Steady loads differ less. */
 #define RISE_FOLLOWS 0.8
 
 #define NEVER UINT64_MAX

@@ -30,7 +30,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t max_instances, max_primitives; /* of any one mesh */
     uint32_t draws;                         /* of one G-buffer pass, without LODs */
     uint64_t triangles;                     /* of all instances at their finest level */
-    /* Of these, slots of desc.reserve.meshes and their sizes; nodes: 0 unless rays trace them.
+    /* How many of these are slots of desc.reserve.meshes; nodes: 0 unless rays trace them.
      * All 0 outside of a masu_frame_plan. */
     uint32_t host_meshes, host_vertices, host_triangles, host_nodes;
 

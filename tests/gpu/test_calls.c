@@ -16,12 +16,16 @@
 
 enum { WIDTH = 32, HEIGHT = 24, RESERVE = 3, STALE = 16, SCENE = 5, CALLS = 4000 };
 
+/* Ids of the objects in a reserve, and of some that were removed. */
+typedef struct slots {
+    uint64_t live[RESERVE], gone[STALE];
+    uint32_t count, gone_count;
+} slots;
+
 typedef struct world {
     masu_session s;
     uint32_t random;
-    masu_model models[RESERVE], gone_models[STALE];
-    masu_punctual_light lights[RESERVE], gone_lights[STALE];
-    uint32_t model_count, light_count, models_gone, lights_gone;
+    slots models, lights; /* of the reserve */
     masu_model scene[SCENE]; /* its models, which are hidden instead of removed */
     uint32_t frames;
 } world;
@@ -55,11 +59,15 @@ static void rows_of(world *w, float rows[12]) {
     rows[3] = number(w), rows[7] = number(w), rows[11] = number(w);
 }
 
+static uint64_t one_of(world *w, const uint64_t *ids, uint32_t count) {
+    return count ? ids[any(w, count)] : 0;
+}
+
 static masu_model any_model(world *w) {
     switch (any(w, 6)) {
         case 0: return (masu_model){(uint64_t)any(w, ~0u) << 32 | any(w, 64)};
-        case 1: return w->models_gone ? w->gone_models[any(w, w->models_gone)] : (masu_model){0};
-        case 2: return w->model_count ? w->models[any(w, w->model_count)] : (masu_model){0};
+        case 1: return (masu_model){one_of(w, w->models.gone, w->models.gone_count)};
+        case 2: return (masu_model){one_of(w, w->models.live, w->models.count)};
         default: return masu_model_at(w->s.m, any(w, 8));
     }
 }
@@ -72,13 +80,31 @@ static masu_instance any_instance(world *w) {
 static masu_punctual_light any_light(world *w) {
     switch (any(w, 5)) {
         case 0: return (masu_punctual_light){(uint64_t)any(w, ~0u) << 32 | any(w, 64)};
-        case 1:
-            return w->lights_gone ? w->gone_lights[any(w, w->lights_gone)]
-                                  : (masu_punctual_light){0};
-        case 2:
-            return w->light_count ? w->lights[any(w, w->light_count)] : (masu_punctual_light){0};
+        case 1: return (masu_punctual_light){one_of(w, w->lights.gone, w->lights.gone_count)};
+        case 2: return (masu_punctual_light){one_of(w, w->lights.live, w->lights.count)};
         default: return masu_punctual_light_at(w->s.m, any(w, 3));
     }
+}
+
+/* A slot gets an object with a new id. */
+static void take(slots *s, uint64_t id) {
+    for (uint32_t i = 0; i < s->count; i++) assert_true(s->live[i] != id);
+    for (uint32_t i = 0; i < s->gone_count; i++) assert_true(s->gone[i] != id);
+    assert_true(s->count < RESERVE);
+    s->live[s->count++] = id;
+}
+
+static bool has(const slots *s, uint64_t id) {
+    for (uint32_t i = 0; i < s->count; i++)
+        if (s->live[i] == id) return true;
+    return false;
+}
+
+static void release(slots *s, uint64_t id) {
+    uint32_t at = 0;
+    while (s->live[at] != id) at++;
+    s->live[at] = s->live[--s->count];
+    if (s->gone_count < STALE) s->gone[s->gone_count++] = id;
 }
 
 /* ---- Calls ----------------------------------------------------------------------------------- */
@@ -140,14 +166,14 @@ static bool is_of_scene(const world *w, masu_model model) {
     return false;
 }
 
-/* Forgets lights that went with the instance they were attached to. */
-static void forget_lights(world *w) {
+static masu_result get_light(world *w, uint64_t id) {
     masu_punctual_light_state state;
-    for (uint32_t i = w->light_count; i-- > 0;) {
-        if (masu_punctual_light_get(w->s.m, w->lights[i], &state, NULL) == MASU_OK) continue;
-        if (w->lights_gone < STALE) w->gone_lights[w->lights_gone++] = w->lights[i];
-        w->lights[i] = w->lights[--w->light_count];
-    }
+    return masu_punctual_light_get(w->s.m, (masu_punctual_light){id}, &state, NULL);
+}
+
+static masu_result get_model(world *w, uint64_t id) {
+    masu_model_state state;
+    return masu_model_get(w->s.m, (masu_model){id}, &state, NULL);
 }
 
 static masu_result model_add(world *w, masu_detail *d) {
@@ -156,33 +182,25 @@ static masu_result model_add(world *w, masu_detail *d) {
     rows_of(w, rows);
     masu_result result = masu_model_add(w->s.m, any_model(w), rows, &out, d);
     if (result == MASU_OK && !is_of_scene(w, out)) {
-        masu_model_state state;
-        assert_int_equal(masu_model_get(w->s.m, out, &state, NULL), MASU_OK);
-        for (uint32_t i = 0; i < w->model_count; i++) assert_true(w->models[i].id != out.id);
-        for (uint32_t i = 0; i < w->models_gone; i++) assert_true(w->gone_models[i].id != out.id);
-        assert_true(w->model_count < RESERVE);
-        w->models[w->model_count++] = out;
+        assert_int_equal(get_model(w, out.id), MASU_OK);
+        take(&w->models, out.id);
     }
     return result;
 }
 
 static masu_result model_remove(world *w, masu_detail *d) {
     masu_model model = any_model(w);
-    uint32_t at = 0;
-    while (at < w->model_count && w->models[at].id != model.id) at++;
     masu_result result = masu_model_remove(w->s.m, model, d);
-    if (at < w->model_count) {
+    if (has(&w->models, model.id)) {
         assert_int_equal(result, MASU_OK);
-        w->models[at] = w->models[--w->model_count];
-        if (w->models_gone < STALE) w->gone_models[w->models_gone++] = model;
-        forget_lights(w);
+        release(&w->models, model.id);
+        /* Lights that were attached to it went with it. */
+        for (uint32_t i = w->lights.count; i-- > 0;)
+            if (get_light(w, w->lights.live[i]) != MASU_OK) release(&w->lights, w->lights.live[i]);
     }
     if (is_of_scene(w, model)) assert_int_equal(result, MASU_OK);
-    for (uint32_t i = 0; i < w->models_gone; i++) {
-        masu_model_state state;
-        assert_int_equal(masu_model_get(w->s.m, w->gone_models[i], &state, NULL),
-                         MASU_ERROR_ARGUMENT);
-    }
+    for (uint32_t i = 0; i < w->models.gone_count; i++)
+        assert_int_equal(get_model(w, w->models.gone[i]), MASU_ERROR_ARGUMENT);
     return result;
 }
 
@@ -233,31 +251,21 @@ static masu_result light_add(world *w, masu_detail *d) {
     masu_punctual_light out = {0};
     masu_punctual_light_state l = light_state(w);
     masu_result result = masu_punctual_light_add(w->s.m, &l, &out, d);
-    if (result == MASU_OK) {
-        assert_true(w->light_count < RESERVE);
-        for (uint32_t i = 0; i < w->lights_gone; i++) assert_true(w->gone_lights[i].id != out.id);
-        w->lights[w->light_count++] = out;
-    }
+    if (result == MASU_OK) take(&w->lights, out.id);
     /* The reserve is full. A copy of a model with a light takes one of its slots, too. */
-    if (result == MASU_ERROR_LIMIT) assert_true(w->light_count + w->model_count >= RESERVE);
+    if (result == MASU_ERROR_LIMIT) assert_true(w->lights.count + w->models.count >= RESERVE);
     return result;
 }
 
 static masu_result light_remove(world *w, masu_detail *d) {
     masu_punctual_light light = any_light(w);
-    uint32_t at = 0;
-    while (at < w->light_count && w->lights[at].id != light.id) at++;
     masu_result result = masu_punctual_light_remove(w->s.m, light, d);
-    if (at < w->light_count) {
+    if (has(&w->lights, light.id)) {
         assert_int_equal(result, MASU_OK);
-        w->lights[at] = w->lights[--w->light_count];
-        if (w->lights_gone < STALE) w->gone_lights[w->lights_gone++] = light;
+        release(&w->lights, light.id);
     }
-    for (uint32_t i = 0; i < w->lights_gone; i++) {
-        masu_punctual_light_state state;
-        assert_int_equal(masu_punctual_light_get(w->s.m, w->gone_lights[i], &state, NULL),
-                         MASU_ERROR_ARGUMENT);
-    }
+    for (uint32_t i = 0; i < w->lights.gone_count; i++)
+        assert_int_equal(get_light(w, w->lights.gone[i]), MASU_ERROR_ARGUMENT);
     return result;
 }
 

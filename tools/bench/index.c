@@ -54,9 +54,11 @@ static bool put_scene(FILE *f, const char *folder, const char *name, char *error
                      folder, i, l->settings[i]);
     }
     masu_verdict v;
-    if (good && masu_verdict_find(rungs, found, &v)) {
+    if (good) {
         fputs("<tr><td>", f);
         put_link(f, name, has(folder, "index.html") ? "index.html" : "ladder.json");
+    }
+    if (good && masu_verdict_find(rungs, found, &v)) {
         masu_markup(f,
                     "</td><td class=\"%s\">%s</td><td>%u of %u: %s</td><td>%.2f</td><td>%.4f</td>",
                     v.holds ? "holds" : "bad", v.holds ? "holds" : "no rung holds", v.rung, found,
@@ -64,11 +66,9 @@ static bool put_scene(FILE *f, const char *folder, const char *name, char *error
         masu_markup(f, "<td>%ux%u</td><td>%s</td><td>%s</td></tr>\n", l->width, l->height, l->date,
                     l->driver);
     } else if (good) {
-        fputs("<tr><td>", f);
-        put_link(f, name, has(folder, "index.html") ? "index.html" : "ladder.json");
-        fputs("</td><td>no "
-              "times</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td></tr>\n",
-              f);
+        fputs("</td><td>no times</td>", f);
+        for (int column = 2; column < 8; column++) fputs("<td>-</td>", f);
+        fputs("</tr>\n", f);
     }
     free(rows);
     free(l);
@@ -101,9 +101,9 @@ bool masu_bench_index(const char *folder, uint32_t *count, char *error, size_t e
         masu_page_begin(f, "Error against run time: ", "all scenes");
         masu_markup(
             f,
-            "<p>Verdict: the first rung, in falling quality, whose median frame takes at most %.2f "
-            "ms "
-            "(60 Hz), or else the fastest rung.</p>\n<div class=\"wide\"><table class=\"sort\">\n"
+            "<p>Verdict: the first rung, in falling quality, whose median frame takes at most "
+            "%.2f ms (60 Hz), or else the fastest rung.</p>\n"
+            "<div class=\"wide\"><table class=\"sort\">\n"
             "<tr><th>scene</th><th>verdict</th><th>rung</th><th>ms</th><th>error</th><th>size</th>"
             "<th>date</th><th>driver</th></tr>\n",
             MASU_PAGE_BUDGET_MS);
