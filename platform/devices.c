@@ -72,6 +72,13 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
     if (imposed) masu_device_row_deny(imposed, &out->features);
 }
 
+/* The same of a Vulkan 1.0 device. */
+static VKAPI_ATTR void VKAPI_CALL get_core_features(VkPhysicalDevice device,
+                                                    VkPhysicalDeviceFeatures *out) {
+    vkGetPhysicalDeviceFeatures(device, out);
+    if (imposed) masu_device_row_deny(imposed, out);
+}
+
 static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *n,
                                                VkQueueFamilyProperties *out) {
     vkGetPhysicalDeviceQueueFamilyProperties(device, n, out);
@@ -83,6 +90,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL masu_device_row_proc_addr(VkInstance in
                                                                    const char *name) {
     if (!strcmp(name, "vkGetPhysicalDeviceProperties")) return (PFN_vkVoidFunction)get_properties;
     if (!strcmp(name, "vkGetPhysicalDeviceFeatures2")) return (PFN_vkVoidFunction)get_features;
+    if (!strcmp(name, "vkGetPhysicalDeviceFeatures")) return (PFN_vkVoidFunction)get_core_features;
     if (!strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties"))
         return (PFN_vkVoidFunction)get_families;
     return vkGetInstanceProcAddr(instance, name);

@@ -6,11 +6,16 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Extensions of Vulkan 1.1. Later versions contain some of them, but devices list them still. */
+/* Extensions of Vulkan 1.1. Later versions contain some of them, but devices list them still. Those
+ * with no feature are part of Vulkan 1.1, and required of a Vulkan 1.0 device: SPIR-V with storage
+ * buffers, image views with less usage than their image, and format features for transfers. */
 static const struct {
     uint32_t feature;
     const char *name;
 } extensions[] = {
+    {0, VK_KHR_STORAGE_BUFFER_STORAGE_CLASS_EXTENSION_NAME},
+    {0, VK_KHR_MAINTENANCE1_EXTENSION_NAME},
+    {0, VK_KHR_MAINTENANCE2_EXTENSION_NAME},
     {MASU_FEATURE_RAY_QUERY, VK_KHR_RAY_QUERY_EXTENSION_NAME},
     {MASU_FEATURE_RAY_QUERY, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME},
     {MASU_FEATURE_RAY_QUERY, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME},
@@ -23,10 +28,9 @@ static const struct {
 #define EXTENSIONS (sizeof extensions / sizeof *extensions)
 _Static_assert(EXTENSIONS == MASU_MAX_EXTENSIONS, "MASU_MAX_EXTENSIONS");
 
-/* The features of `wanted` whose extensions are among the first EXTENSIONS_READ of the device. */
+/* Bits of those of `extensions` that are among the first EXTENSIONS_READ of the device. */
 #define EXTENSIONS_READ 512u
-static uint32_t with_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc,
-                                uint32_t wanted) {
+static uint32_t find_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc) {
     PFN_vkEnumerateDeviceExtensionProperties enumerate =
         (PFN_vkEnumerateDeviceExtensionProperties)get_proc(vk->instance,
                                                            "vkEnumerateDeviceExtensionProperties");
@@ -34,17 +38,40 @@ static uint32_t with_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get
     uint32_t n = EXTENSIONS_READ;
     VkResult r = enumerate ? enumerate(vk->physical, NULL, &n, list) : VK_NOT_READY;
     if (r != VK_SUCCESS && r != VK_INCOMPLETE) n = 0;
+    uint32_t found = 0;
     for (uint32_t e = 0; e < EXTENSIONS; e++) {
-        uint32_t i = 0;
-        while (i < n && strcmp(list[i].extensionName, extensions[e].name)) i++;
-        if (i == n) wanted &= ~extensions[e].feature;
+        for (uint32_t i = 0; i < n; i++)
+            found |= (uint32_t)!strcmp(list[i].extensionName, extensions[e].name) << e;
     }
-    return wanted;
+    return found;
+}
+
+static int is_1_0(const masu_vk *vk) { return vk->properties.apiVersion < VK_API_VERSION_1_1; }
+
+const char *masu_missing_extension(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc) {
+    if (!is_1_0(vk)) return NULL;
+    uint32_t found = find_extensions(vk, get_proc);
+    for (uint32_t e = 0; e < EXTENSIONS; e++) {
+        if (!extensions[e].feature && !(found >> e & 1u)) return extensions[e].name;
+    }
+    return NULL;
+}
+
+static uint32_t core_features(const VkPhysicalDeviceFeatures *f) {
+    return (f->textureCompressionBC ? MASU_FEATURE_TEXTURE_COMPRESSION_BC : 0u) |
+           (f->samplerAnisotropy ? MASU_FEATURE_SAMPLER_ANISOTROPY : 0u);
 }
 
 /* Drivers leave structures that they do not support unchanged (specification, "Valid Usage for
  * Structure Pointer Chains"), so they remain 0. */
 uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc) {
+    if (is_1_0(vk)) {
+        PFN_vkGetPhysicalDeviceFeatures get_core = (PFN_vkGetPhysicalDeviceFeatures)get_proc(
+            vk->instance, "vkGetPhysicalDeviceFeatures");
+        VkPhysicalDeviceFeatures core = {0};
+        if (get_core) get_core(vk->physical, &core);
+        return core_features(&core);
+    }
     PFN_vkGetPhysicalDeviceFeatures2 get = (PFN_vkGetPhysicalDeviceFeatures2)get_proc(
         vk->instance, "vkGetPhysicalDeviceFeatures2");
     if (!get) return 0;
@@ -60,19 +87,19 @@ uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc
     VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                      .pNext = &rays};
     get(vk->physical, &all);
-    uint32_t has = 0;
-    if (all.features.textureCompressionBC) has |= MASU_FEATURE_TEXTURE_COMPRESSION_BC;
-    if (all.features.samplerAnisotropy) has |= MASU_FEATURE_SAMPLER_ANISOTROPY;
+    uint32_t has = core_features(&all.features), found = find_extensions(vk, get_proc);
     if (rays.rayQuery && structure.accelerationStructure && address.bufferDeviceAddress)
         has |= MASU_FEATURE_RAY_QUERY;
     if (half.shaderFloat16) has |= MASU_FEATURE_SHADER_FLOAT16;
-    return with_extensions(vk, get_proc, has);
+    for (uint32_t e = 0; e < EXTENSIONS; e++)
+        if (!(found >> e & 1u)) has &= ~extensions[e].feature;
+    return has;
 }
 
-void masu_list_extensions(masu_device_info *out) {
+void masu_list_extensions(const masu_vk *vk, masu_device_info *out) {
     out->extension_count = 0;
     for (uint32_t e = 0; e < EXTENSIONS; e++) {
-        if (out->used & extensions[e].feature)
+        if (extensions[e].feature ? out->used & extensions[e].feature : (uint32_t)is_1_0(vk))
             out->extensions[out->extension_count++] = extensions[e].name;
     }
 }

@@ -3,6 +3,7 @@
 #include "device/vk.h"
 
 #include "base/error.h"
+#include "device/offers.h"
 #include "plan/output.h"
 #include "shared/masu_shared.h"
 
@@ -89,12 +90,11 @@ static masu_result check_sizes(const masu_desc *desc, const masu_vk *vk, masu_de
 }
 
 static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
-    if (vk->properties.apiVersion < VK_API_VERSION_1_1) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "Vulkan 1.1", VK_API_VERSION_1_1,
-                         vk->properties.apiVersion,
-                         "device '%s' offers Vulkan %u.%u, needed is 1.1",
-                         vk->properties.deviceName, VK_VERSION_MAJOR(vk->properties.apiVersion),
-                         VK_VERSION_MINOR(vk->properties.apiVersion));
+    const char *missing = masu_missing_extension(vk, desc->vulkan.get_instance_proc_addr);
+    if (missing) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, missing, 1, 0,
+                         "device '%s' with Vulkan 1.0 lacks the extension %s",
+                         vk->properties.deviceName, missing);
     }
     VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     if ((vk->queue_family.queueFlags & wanted) != wanted) {

@@ -50,7 +50,7 @@ const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module 
 
 /* ---- The record: the counts that a module of a blob was compiled for ------------------------- */
 
-/* masu-bake writes the record into each module as the string of an OpModuleProcessed, which drivers
+/* masu-bake writes the record into each module as the string of an OpSourceExtension, which drivers
  * ignore. masu_scene_bind generates it from the counts of the blob and compares. */
 typedef struct masu_module_counts {
     uint32_t kind; /* section kind */
@@ -62,7 +62,7 @@ typedef struct masu_module_counts {
 void masu_module_record(const masu_module_counts *counts, char text[MASU_MODULE_RECORD_BYTES]);
 /* The instruction: opcode and length, then the string. */
 #define MASU_MODULE_RECORD_WORDS (1u + MASU_MODULE_RECORD_BYTES / 4u)
-#define MASU_MODULE_RECORD_FIRST (MASU_MODULE_RECORD_WORDS << 16 | 330u)
+#define MASU_MODULE_RECORD_FIRST (MASU_MODULE_RECORD_WORDS << 16 | 4u)
 /* Index at which the record is inserted into a well-formed module. */
 uint64_t masu_module_record_place(const uint32_t *words, uint64_t count);
 

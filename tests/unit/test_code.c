@@ -106,7 +106,7 @@ enum { CAPABILITY = 5, MODEL = 7, ENTRY = 10, MODE = 15, TAIL = 21 + MASU_MODULE
 static void what_no_pass_could_run_is_refused(void **state) {
     (void)state;
     const change changes[] = {
-        {1, 0x00010400, "version"},
+        {1, 0x00010300, "version"},
         {3, 0, "ids"},
         {3, 65537, "ids"},
         {3, 4, "bound"},
@@ -175,7 +175,7 @@ static void a_module_that_is_cut_anywhere_is_refused(void **state) {
 /* A module with one resource, of this class, in set and binding. */
 static uint32_t resource_module(uint32_t *words, uint32_t set, uint32_t binding, uint32_t class) {
     static const uint32_t storage[] = {0, 2, 12, 0, 0, 9};
-    const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 16,        0, OP(2, 17), 1,
+    const uint32_t head[] = {0x07230203u, 0x00010000u, 0, 16,        0, OP(2, 17), 1,
                              OP(3, 14),   0,           1, OP(5, 15), 5, 1,         0x6E69616Du,
                              0,           OP(6, 16),   1, 17,        8, 8,         1};
     const uint32_t globals[] = {OP(5, 72),
