@@ -6,56 +6,27 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Extensions of Vulkan 1.1. Later versions contain some of them, but devices list them still. Those
- * with no feature are part of Vulkan 1.1, and required of a Vulkan 1.0 device: SPIR-V with storage
- * buffers, image views with less usage than their image, and format features for transfers. */
-static const struct {
-    uint32_t feature;
-    const char *name;
-} extensions[] = {
-    {0, VK_KHR_STORAGE_BUFFER_STORAGE_CLASS_EXTENSION_NAME},
-    {0, VK_KHR_MAINTENANCE1_EXTENSION_NAME},
-    {0, VK_KHR_MAINTENANCE2_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_RAY_QUERY_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_EXT_DESCRIPTOR_INDEXING_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_SPIRV_1_4_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME},
-    {MASU_FEATURE_SHADER_FLOAT16, VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME},
+/* Extensions of Vulkan 1.1. Later versions contain some of them, but devices list them still. */
+static const uint32_t features_of[] = {
+    MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY,
+    MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY,
+    MASU_FEATURE_SHADER_FLOAT16,
+};
+static const char *const extensions[] = {
+    VK_KHR_RAY_QUERY_EXTENSION_NAME,
+    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+    VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME,
+    VK_EXT_DESCRIPTOR_INDEXING_EXTENSION_NAME,
+    VK_KHR_SPIRV_1_4_EXTENSION_NAME,
+    VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME,
+    VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME,
 };
 #define EXTENSIONS (sizeof extensions / sizeof *extensions)
-_Static_assert(EXTENSIONS == MASU_MAX_EXTENSIONS, "MASU_MAX_EXTENSIONS");
-
-/* Bits of those of `extensions` that are among the first EXTENSIONS_READ of the device. */
-#define EXTENSIONS_READ 512u
-static uint32_t find_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc) {
-    PFN_vkEnumerateDeviceExtensionProperties enumerate =
-        (PFN_vkEnumerateDeviceExtensionProperties)get_proc(vk->instance,
-                                                           "vkEnumerateDeviceExtensionProperties");
-    VkExtensionProperties list[EXTENSIONS_READ];
-    uint32_t n = EXTENSIONS_READ;
-    VkResult r = enumerate ? enumerate(vk->physical, NULL, &n, list) : VK_NOT_READY;
-    if (r != VK_SUCCESS && r != VK_INCOMPLETE) n = 0;
-    uint32_t found = 0;
-    for (uint32_t e = 0; e < EXTENSIONS; e++) {
-        for (uint32_t i = 0; i < n; i++)
-            found |= (uint32_t)!strcmp(list[i].extensionName, extensions[e].name) << e;
-    }
-    return found;
-}
+_Static_assert(EXTENSIONS + MASU_VK_1_0_EXTENSIONS == MASU_MAX_EXTENSIONS, "MASU_MAX_EXTENSIONS");
+_Static_assert(EXTENSIONS == sizeof features_of / sizeof *features_of, "features_of");
 
 static int is_1_0(const masu_vk *vk) { return vk->properties.apiVersion < VK_API_VERSION_1_1; }
-
-const char *masu_missing_extension(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc) {
-    if (!is_1_0(vk)) return NULL;
-    uint32_t found = find_extensions(vk, get_proc);
-    for (uint32_t e = 0; e < EXTENSIONS; e++) {
-        if (!extensions[e].feature && !(found >> e & 1u)) return extensions[e].name;
-    }
-    return NULL;
-}
 
 static uint32_t core_features(const VkPhysicalDeviceFeatures *f) {
     return (f->textureCompressionBC ? MASU_FEATURE_TEXTURE_COMPRESSION_BC : 0u) |
@@ -87,20 +58,22 @@ uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc
     VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                      .pNext = &rays};
     get(vk->physical, &all);
-    uint32_t has = core_features(&all.features), found = find_extensions(vk, get_proc);
+    uint32_t has = core_features(&all.features);
+    uint32_t found = masu_vk_find_extensions(vk, get_proc, extensions, EXTENSIONS);
     if (rays.rayQuery && structure.accelerationStructure && address.bufferDeviceAddress)
         has |= MASU_FEATURE_RAY_QUERY;
     if (half.shaderFloat16) has |= MASU_FEATURE_SHADER_FLOAT16;
     for (uint32_t e = 0; e < EXTENSIONS; e++)
-        if (!(found >> e & 1u)) has &= ~extensions[e].feature;
+        if (!(found >> e & 1u)) has &= ~features_of[e];
     return has;
 }
 
 void masu_list_extensions(const masu_vk *vk, masu_device_info *out) {
     out->extension_count = 0;
+    for (uint32_t e = 0; e < MASU_VK_1_0_EXTENSIONS && is_1_0(vk); e++)
+        out->extensions[out->extension_count++] = masu_vk_1_0_extensions[e];
     for (uint32_t e = 0; e < EXTENSIONS; e++) {
-        if (extensions[e].feature ? out->used & extensions[e].feature : (uint32_t)is_1_0(vk))
-            out->extensions[out->extension_count++] = extensions[e].name;
+        if (out->used & features_of[e]) out->extensions[out->extension_count++] = extensions[e];
     }
 }
 

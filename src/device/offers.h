@@ -11,8 +11,6 @@
 uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_instance_proc_addr);
 /* Sets extensions and extension_count of `out` to what `out->used` and Vulkan 1.0 need. */
 void masu_list_extensions(const masu_vk *vk, masu_device_info *out);
-/* Name of a required extension that a Vulkan 1.0 device lacks; NULL: none. */
-const char *masu_missing_extension(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc_addr);
 
 void masu_report_offers(const masu_device *m); /* cannot fail */
 

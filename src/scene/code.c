@@ -208,7 +208,7 @@ typedef struct walk {
     uint32_t bound;
     masu_module *out;
     uint32_t rank, entries, functions, local_sizes, push_type, workgroup_size, entry;
-    int in_function, in_block, merging, blocks, entry_found;
+    int in_function, in_block, merging, blocks, entry_found, has_storage_class;
     uint8_t ids[MASU_MODULE_IDS_MAX / 4];
 } walk;
 
@@ -318,6 +318,8 @@ static const char *note_variable(walk *w, const uint32_t *word) {
         if (w->push_type) return "there are two blocks of push constants";
         w->push_type = word[1];
     }
+    if (storage == CLASS_STORAGE && !w->has_storage_class)
+        return "storage buffers need SPV_KHR_storage_buffer_storage_class";
     if (!bound) return k < o->bound_count ? "a variable has a binding, but is no resource" : NULL;
     if (k == o->bound_count || o->bound[k].set == UINT32_MAX || o->bound[k].binding == UINT32_MAX)
         return "a resource has no set or no binding";
@@ -344,9 +346,8 @@ static const char *note(walk *w, const uint32_t *word, uint32_t length) {
         return capability_ok(word[1]) ? NULL : "a capability is asked for that no pass has";
     case OP_EXTENSION: {
         static const char known[40] = "SPV_KHR_storage_buffer_storage_class";
-        return length == 11 && memcmp(word + 1, known, sizeof known) == 0
-                   ? NULL
-                   : "an extension is asked for that no pass has";
+        w->has_storage_class = length == 11 && memcmp(word + 1, known, sizeof known) == 0;
+        return w->has_storage_class ? NULL : "an extension is asked for that no pass has";
     }
     case OP_EXT_INST_IMPORT: {
         static const char set[16] = "GLSL.std.450";

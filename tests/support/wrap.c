@@ -416,6 +416,13 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
     }
 }
 
+static VKAPI_ATTR void VKAPI_CALL get_core_features(VkPhysicalDevice device,
+                                                    VkPhysicalDeviceFeatures *out) {
+    vkGetPhysicalDeviceFeatures(device, out);
+    if (wrap.row) masu_device_row_deny(wrap.row, out);
+    if (wrap.no_features) memset(out, 0, sizeof *out);
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL get_extensions(VkPhysicalDevice device, const char *layer,
                                                      uint32_t *n, VkExtensionProperties *out) {
     if (!wrap.no_extensions) return vkEnumerateDeviceExtensionProperties(device, layer, n, out);
@@ -436,6 +443,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL wrap_get_instance_proc_addr(VkInstance 
         return real_label ? (PFN_vkVoidFunction)cmd_label : NULL;
     }
     if (!strcmp(name, "vkGetPhysicalDeviceFeatures2")) return (PFN_vkVoidFunction)get_features;
+    if (!strcmp(name, "vkGetPhysicalDeviceFeatures")) return (PFN_vkVoidFunction)get_core_features;
     if (!strcmp(name, "vkEnumerateDeviceExtensionProperties"))
         return (PFN_vkVoidFunction)get_extensions;
     if (!strcmp(name, "vkGetPhysicalDeviceFormatProperties")) return (PFN_vkVoidFunction)get_format;
