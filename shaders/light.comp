@@ -13,6 +13,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
+#ifdef MASU_LOCAL_SHADOWS
+#define MASU_SHELVED /* fewer registers during the reads of the atlas */
+#endif
 #include "push/light.h"
 #include "shared/counters.h"
 #include "shared/lights.h"
@@ -67,13 +70,10 @@ vec2 arriving(uvec2 at)
 #endif
 }
 
-/* The surface that the G-buffer stores at a pixel. */
+/* The surface that the G-buffer stores at a pixel, without its emission unless that is packed. */
 masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 {
     masu_surface s = masu_unpack_look(albedo, normal);
-    if (!masu_emission_packed && masu_has_emission(normal)) { /* elsewhere hdr is undefined */
-        s.emissive = imageLoad(hdr_image, at).rgb;
-    }
 #ifdef MASU_SURFACE
     if ((masu_unpack_flags(normal) & MASU_SURFACE_MORE) != 0u) {
         masu_unpack_surface(texelFetch(surface_image, at, 0), s);
@@ -120,12 +120,20 @@ void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 re
     uvec2 tile = gl_WorkGroupID.xy / uint(MASU_TILE / MASU_GROUP);
     masu_asked asked = masu_lights_asked(tile, size, push.light_tiles != 0u);
     masu_light_sum sum = masu_light_sum(color);
+#ifdef MASU_SHELVED
+    masu_shelved_bsdf shelf = masu_shelve(b);
+#endif
     uint reached = 0u;
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {
             break;
         }
-        reached += masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
+#ifdef MASU_SHELVED
+        bool reaches = masu_add_local_light(sum, s, b, shelf, masu_light_asked(asked, i), rel, n, traced);
+#else
+        bool reaches = masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced);
+#endif
+        reached += reaches ? 1u : 0u;
     }
     color = sum.light;
     masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);
@@ -151,7 +159,7 @@ void main()
             vec4 albedo = texelFetch(albedo_image, ivec2(at), 0);
             uint normal = texelFetch(normal_image, ivec2(at), 0).r;
             masu_surface s = surface_at(ivec2(at), albedo, normal);
-            color = s.emissive;
+            color = vec3(0.0);
             if (!masu_is_unlit_texel(normal)) {
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
                 vec2 kept = vec2(1.0);
@@ -180,6 +188,12 @@ void main()
                 vec3 traced = vec3(1.0 - kept, push.accumulate != 0u ? 1.0 : 0.0);
                 add_lights(color, s, b, at, ray * masu_light_depth(depth), n, traced);
 #endif
+            }
+            /* Last, so that no registers keep it. */
+            if (masu_emission_packed) {
+                color += s.emissive;
+            } else if (masu_has_emission(normal)) { /* elsewhere hdr is undefined */
+                color += imageLoad(hdr_image, ivec2(at)).rgb;
             }
             if (foggy) {
                 float far = frame.forward.w * masu_rcp(depth) * length(ray);
