@@ -82,6 +82,15 @@ masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
     return s;
 }
 
+/* The light that a surface emits; loaded where it is added, so that no registers keep it. */
+vec3 emission(uvec2 at, masu_surface s, uint normal)
+{
+    if (masu_emission_packed) {
+        return s.emissive;
+    }
+    return masu_has_emission(normal) ? imageLoad(hdr_image, ivec2(at)).rgb : vec3(0.0); /* elsewhere hdr is undefined */
+}
+
 #ifdef MASU_LOCAL_SHADOWS
 layout(constant_id = 16) const bool reliefs = false; /* normals may be from normal maps */
 
@@ -150,17 +159,16 @@ void main()
         vec3 direction = masu_normalize(ray, frame.forward.xyz);
         float depth = texelFetch(depth_image, ivec2(at), 0).r;
         vec3 color;
-        float air = 0.0;
-        bool open = !(depth > 0.0);
-        if (open) {
-            color = masu_sun_disc(direction);
-            air = foggy ? masu_air_depth_sky(direction) : 0.0;
+        if (!(depth > 0.0)) {
+            float air = foggy ? masu_air_depth_sky(direction) : 0.0;
+            color = masu_seen_along(masu_sun_disc(direction), true, frame.background, direction, foggy, air);
         } else {
             vec4 albedo = texelFetch(albedo_image, ivec2(at), 0);
             uint normal = texelFetch(normal_image, ivec2(at), 0).r;
             masu_surface s = surface_at(ivec2(at), albedo, normal);
-            color = vec3(0.0);
-            if (!masu_is_unlit_texel(normal)) {
+            if (masu_is_unlit_texel(normal)) {
+                color = emission(at, s, normal);
+            } else {
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
                 vec2 kept = vec2(1.0);
                 if (reflections) {
@@ -169,16 +177,13 @@ void main()
                 vec3 n = masu_unpack_normal(normal);
 #ifdef MASU_LIGHTS
                 masu_around around = masu_ambient_first(s, rel, masu_base_normal(s, n));
+#else
+                masu_around around = masu_ambient_at(rel, masu_base_normal(s, n));
 #endif
                 masu_mirrored sky = masu_mirrored_sky(s, n, -direction, kept);
-#ifdef MASU_LIGHTS
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, around, arriving(at), sky);
-#else
-                masu_bsdf b = masu_bsdf_make(s, n, -direction);
-                masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
-#endif
-                color += lit.diffuse + lit.specular;
+                color = lit.diffuse + lit.specular + emission(at, s, normal);
 #ifdef MASU_LIGHTS
 #ifdef MASU_LOCAL_SHADOWS
                 if (reliefs) {
@@ -189,18 +194,13 @@ void main()
                 add_lights(color, s, b, at, ray * masu_light_depth(depth), n, traced);
 #endif
             }
-            /* Last, so that no registers keep it. */
-            if (masu_emission_packed) {
-                color += s.emissive;
-            } else if (masu_has_emission(normal)) { /* elsewhere hdr is undefined */
-                color += imageLoad(hdr_image, ivec2(at)).rgb;
-            }
+            float air = 0.0;
             if (foggy) {
                 float far = frame.forward.w * masu_rcp(depth) * length(ray);
                 air = masu_air_depth(direction, far);
             }
+            color = masu_seen_along(color, false, frame.background, direction, foggy, air);
         }
-        color = masu_seen_along(color, open, frame.background, direction, foggy, air);
         MASU_STORE_HALF(hdr_image, at, vec4(color, 1.0));
     }
     masu_count_end();
