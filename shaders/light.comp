@@ -70,10 +70,24 @@ vec2 arriving(uvec2 at)
 #endif
 }
 
-/* The surface that the G-buffer stores at a pixel, without its emission unless that is packed. */
+#ifdef MASU_LOCAL_SHADOWS
+const bool emission_late = true; /* loaded after the ambient light, which leaves no registers for it */
+#else
+const bool emission_late = false;
+#endif
+
+vec3 load_emission(ivec2 at, uint normal)
+{
+    return masu_has_emission(normal) ? imageLoad(hdr_image, at).rgb : vec3(0.0); /* elsewhere hdr is undefined */
+}
+
+/* The surface that the G-buffer stores at a pixel. */
 masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 {
     masu_surface s = masu_unpack_look(albedo, normal);
+    if (!masu_emission_packed && !emission_late) {
+        s.emissive = load_emission(at, normal);
+    }
 #ifdef MASU_SURFACE
     if ((masu_unpack_flags(normal) & MASU_SURFACE_MORE) != 0u) {
         masu_unpack_surface(texelFetch(surface_image, at, 0), s);
@@ -82,13 +96,9 @@ masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
     return s;
 }
 
-/* The light that a surface emits; loaded where it is added, so that no registers keep it. */
-vec3 emission(uvec2 at, masu_surface s, uint normal)
+vec3 emission(ivec2 at, masu_surface s, uint normal)
 {
-    if (masu_emission_packed) {
-        return s.emissive;
-    }
-    return masu_has_emission(normal) ? imageLoad(hdr_image, ivec2(at)).rgb : vec3(0.0); /* elsewhere hdr is undefined */
+    return !masu_emission_packed && emission_late ? load_emission(at, normal) : s.emissive;
 }
 
 #ifdef MASU_LOCAL_SHADOWS
@@ -167,7 +177,7 @@ void main()
             uint normal = texelFetch(normal_image, ivec2(at), 0).r;
             masu_surface s = surface_at(ivec2(at), albedo, normal);
             if (masu_is_unlit_texel(normal)) {
-                color = emission(at, s, normal);
+                color = emission(ivec2(at), s, normal);
             } else {
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
                 vec2 kept = vec2(1.0);
@@ -183,7 +193,7 @@ void main()
                 masu_mirrored sky = masu_mirrored_sky(s, n, -direction, kept);
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, around, arriving(at), sky);
-                color = lit.diffuse + lit.specular + emission(at, s, normal);
+                color = lit.diffuse + lit.specular + emission(ivec2(at), s, normal);
 #ifdef MASU_LIGHTS
 #ifdef MASU_LOCAL_SHADOWS
                 if (reliefs) {
