@@ -14,7 +14,7 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #ifdef MASU_LOCAL_SHADOWS
-#define MASU_SHELVED /* fewer registers during the reads of the atlas */
+#define MASU_SHELVED masu_few_registers
 #endif
 #include "push/light.h"
 #include "shared/counters.h"

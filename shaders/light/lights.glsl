@@ -265,7 +265,9 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     }
     /* Recomputed, in another form so that the compiler does not merge them: kept alive, they would
      * take six registers during the atlas reads. */
-    light = masu_lights[min(number, masu_light_count() - 1u)];
+    if (masu_few_registers) {
+        light = masu_lights[min(number, masu_light_count() - 1u)]; /* the same, for compilers another */
+    }
     to = -(rel - light.position.xyz);
     l = to * masu_rsqrt(dot(to, to));
 #endif
@@ -292,12 +294,16 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     vec3 form = vec3(0.0);
     if (area) {
         form = masu_rectangle(b, to, u, v);
-        light = masu_lights[min(number, masu_lights_header.x)]; /* reloaded, as above */
-        to = -(rel - light.position.xyz);
-        l = to * masu_rsqrt(dot(to, to));
+        if (masu_few_registers) {
+            light = masu_lights[min(number, masu_lights_header.x)]; /* as above */
+            to = -(rel - light.position.xyz);
+            l = to * masu_rsqrt(dot(to, to));
+        }
     }
 #ifdef MASU_SHELVED
-    masu_unshelve(shelf, b);
+    if (MASU_SHELVED) {
+        masu_unshelve(shelf, b);
+    }
 #endif
     vec3 color = light.color.rgb * strength;
     bool directed = true;
