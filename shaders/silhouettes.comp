@@ -322,7 +322,7 @@ void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun
     vec3 n = masu_unpack_normal(normal);
     masu_mirrored sky = masu_mirrored_sky(s, n, v, vec2(1.0));
     masu_bsdf b = masu_bsdf_make(s, n, v);
-    masu_lit lit = masu_shade_around(s, b, vec3(0.0), 1.0, sky);
+    masu_lit lit = masu_shade_around(s, b, masu_ambient_at(vec3(0.0), b.n), 1.0, sky);
     around += lit.diffuse + lit.specular;
     lit = masu_lit(vec3(0.0), vec3(0.0), vec3(0.0));
     masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb);

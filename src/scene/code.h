@@ -18,7 +18,7 @@
 #define MASU_MODULE_WORDS_MAX ((uint64_t)16 << 20)
 #define MASU_MODULE_IDS_MAX 65536u
 /* Specialisation constants that a module may declare: 0 .. count - 1 (src/device/pipelines.c). */
-#define MASU_SPECIAL_COUNT 26u
+#define MASU_SPECIAL_COUNT 27u
 #define MASU_MODULE_BOUND_MAX 32u /* resources of a module; also its other interface variables */
 
 typedef enum masu_module_class {
