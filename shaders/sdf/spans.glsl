@@ -96,11 +96,11 @@ void span_look_up(float t, uvec2 size)
         if (MASU_SDF_LISTED_COUNT == 1) {
             masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
         }
-        return;
-    }
-    uint place = span_first + now * uint(MASU_SDF_BLOCK_WORDS);
-    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-        masu_list_bits[w] = masu_tiles[place + uint(w)];
+    } else {
+        uint place = span_first + now * uint(MASU_SDF_BLOCK_WORDS);
+        for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+            masu_list_bits[w] = masu_tiles[place + uint(w)];
+        }
     }
 }
 
@@ -119,10 +119,10 @@ void span_begin(uvec2 at, uvec2 size, float t)
     span_to = span_start() * (1.0 + span_pixel(size) * 8.0);
     if (MASU_SPAN_BEFORE || !(t <= span_to)) {
         span_look_up(t, size);
-        return;
-    }
-    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-        masu_list_bits[w] = masu_tiles[span_first + uint(w)];
+    } else {
+        for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+            masu_list_bits[w] = masu_tiles[span_first + uint(w)];
+        }
     }
 }
 
