@@ -2,7 +2,7 @@
 # drivers.sh FOLDER [SET...]: builds what `masu-lab isa` needs into FOLDER, from Debian's source packages of Mesa: the
 # drivers and the no-op kernel shims. No test runs it. Sets, both by default:
 #   intel   ANV, Turnip: Mesa 22.3.6 of Debian 12. Ten minutes on two cores, 1.5 GB while it builds
-#   mobile  V3DV, PanVK: Mesa 25.0.7 of its backports, as long
+#   mobile  V3DV, PanVK: Mesa 25.0.7 of its backports, as long. It needs meson 1.1: of its backports, too
 #
 # Needs PACKAGES_isa of packages.mk (make isa-drivers). MASU_DEBIAN_MIRROR replaces http://deb.debian.org/debian.
 # CONFIGURE_ONLY=1 ends each set after meson.
@@ -38,11 +38,14 @@ build() {
     # shellcheck disable=SC2086 # a list
     (cd "$source" && PATH=/usr/bin:$PATH meson setup build --native-file native.ini --buildtype release -Db_ndebug=true \
         -Dgallium-drivers= -Dplatforms= -Dllvm=disabled -Dopengl=false -Degl=disabled -Dgbm=disabled -Dglx=disabled \
-        $options > log 2>&1) || fail "meson: $(tail -n 1 "$source/log")"
+        $options > log 2>&1) || fail "meson: $(grep -m 1 ERROR "$source/log")"
     [ -z "${CONFIGURE_ONLY:-}" ] || return 0
     (cd "$source" && PATH=/usr/bin:$PATH ninja -C build "$@" > log 2>&1) || fail "ninja: $(tail -n 3 "$source/log")"
     for target in "$@"; do strip -o "$folder/${target##*/}" "$source/build/$target"; done
 }
+
+# is_newer VERSION: whether meson has at least this version
+is_newer() { printf '%s\n' "$1" "$(PATH=/usr/bin:$PATH meson --version)" | sort -CV; }
 
 mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
@@ -55,6 +58,7 @@ for set in "$@"; do
             src/freedreno/vulkan/libvulkan_freedreno.so src/freedreno/drm-shim/libfreedreno_noop_drm_shim.so
         ;;
     mobile)
+        is_newer 1.1 || fail 'V3DV and PanVK need meson 1.1 (bookworm-backports)'
         fetch 25.0.7 tar.xz 592272df3cf01e85e7db300c449df5061092574d099da275d19e97ef0510f8a6
         # The shim is a Raspberry Pi 4; V3D_SHIM_VER=71 makes it a Pi 5.
         shim=$work/25.0.7/src/broadcom/drm-shim/v3d_noop.c
