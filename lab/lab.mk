@@ -36,7 +36,7 @@ light: tools $(foreach s,alley garden night room small_lamps,$(BUILD)/scenes/$(s
 	+$(V)$(lab_make) $@
 
 .PHONY: isa-drivers
-isa-drivers: ## build Intel's and Adreno's compilers for MASU_ISA_DRIVERS=build/isa-drivers (ten minutes)
+isa-drivers: ## build Intel's, Adreno's, the Raspberry Pi's and Mali's compilers for MASU_ISA_DRIVERS=build/isa-drivers (twenty minutes)
 	$(call install-packages,$(PACKAGES_isa))
 	$(V)lab/isa/drivers.sh build/isa-drivers
 
