@@ -268,7 +268,8 @@ mkdir -p "$MESA_SHADER_CACHE_DIR"
 
 # The check that builds the tree anew and runs this again takes half of the processors. It goes on beside the GPU
 # tests, which build nothing, and not beside scripts that do.
-for kind in unit script fuzz; do
+# The short ones come last: then no processor waits for a long one.
+for kind in script fuzz unit; do
     for program in ${programs[$kind]}; do
         [[ $program == */full/sanitize.sh ]] || start $kind $kind "$program"
     done
