@@ -20,14 +20,13 @@ only = $(if $(wanted),$(filter $(wanted),$(1)),$(1))
 
 test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1))))
 GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
-# With FULL the same inputs go through the programs with the sanitizers, which find more.
-FUZZ_TESTS   := $(if $(FULL),,$(call test_programs,tests/fuzz/fuzz_*.c))
+FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.
 TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh facts.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh abi.sh bindings.sh sizes.sh floats.sh)
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh bake_limits.sh bake_probes.sh bake_rays.sh bake_reflected_sdf.sh \
-    bake_static.sh compare.sh drive.sh examples.sh meso.sh scene_forms.sh sdfc.sh view.sh)
+    bake_static.sh compare.sh drive.sh meso.sh scene_forms.sh sdfc.sh view.sh)
 # Nor sums and simulated loads, which touch no memory but their own variables.
 SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull device_class environment governor governor_host governor_loads \
     ladder masks sequence sky vndf)
@@ -189,5 +188,6 @@ fuzz_seeds = SEEDS_$(notdir $(1))='$(FUZZ_SEEDS_$(patsubst fuzz_%,%,$(notdir $(1
 RUN_TESTS  = $(SANITIZER_ENV) $(SPIRV_CACHE) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' MADE='$(MADE)' config='$(config)' \
     WERROR='$(WERROR)' DRIVERS='$(DRIVERS)' LONG='$(LONG)' $(foreach t,$(FUZZ_TESTS),$(call fuzz_seeds,$(t))) \
     tests/run.sh
-RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(FUZZ_TESTS)
+# With FULL=1 the fuzzers run with the sanitizers (tests/full), on the same inputs.
+RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(if $(FULL),,$(FUZZ_TESTS))
 RUN_GPU    = --gpu $(GPU_TESTS)
