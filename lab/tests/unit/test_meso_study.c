@@ -29,7 +29,7 @@ static void curves_are_twice_as_near_as_plain_maps(void **state) {
         masu_meso_patch p;
         assert_true(masu_meso_make(*name, 2, 1, &p));
         masu_meso_options options = {
-            .size = 64, .side = trials(64, 48, 32), .sky_rays = trials(16, 16, 8), .seed = 1};
+            .size = 64, .side = trials(64, 64, 32), .sky_rays = trials(16, 16, 8), .seed = 1};
         assert_true(masu_meso_study_run(&p, &options, &study));
         double angle = 0, gain = masu_meso_study_gain(&study, &angle);
         double kept = 0, between = 0;
