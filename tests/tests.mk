@@ -26,7 +26,7 @@ TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh fac
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh bake_limits.sh bake_probes.sh bake_rays.sh bake_reflected_sdf.sh \
-    compare.sh drive.sh meso.sh scene_forms.sh sdfc.sh view.sh)
+    bake_static.sh compare.sh drive.sh meso.sh scene_forms.sh sdfc.sh view.sh)
 # Nor sums and simulated loads, which touch no memory but their own variables.
 SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull device_class environment governor governor_host governor_loads \
     ladder masks sequence sky vndf)
@@ -188,5 +188,6 @@ fuzz_seeds = SEEDS_$(notdir $(1))='$(FUZZ_SEEDS_$(patsubst fuzz_%,%,$(notdir $(1
 RUN_TESTS  = $(SANITIZER_ENV) $(SPIRV_CACHE) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' MADE='$(MADE)' config='$(config)' \
     WERROR='$(WERROR)' DRIVERS='$(DRIVERS)' LONG='$(LONG)' $(foreach t,$(FUZZ_TESTS),$(call fuzz_seeds,$(t))) \
     tests/run.sh
-RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(FUZZ_TESTS)
+# With FULL=1 the fuzzers run with the sanitizers (tests/full), on the same inputs.
+RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(if $(FULL),,$(FUZZ_TESTS))
 RUN_GPU    = --gpu $(GPU_TESTS)

@@ -140,4 +140,4 @@ $(BUILD)/examples/drive: $(call objects,$(wildcard examples/drive/*.c))
 # A scene's field in double precision (masu-sdfc --c), next to the scene as NAME.truth.so.
 %.truth.so: %.truth.c
 	@echo "  TRUTH   $@"
-	$(V)$(CC) -std=c11 -O2 -w -shared -fPIC -o $@ $< -lm
+	$(V)$(CC) -std=c11 -O3 -w -shared -fPIC -o $@ $< -lm
