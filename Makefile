@@ -51,10 +51,12 @@ CONFIG_debug    := -O0 -g3
 # Undefined behaviour traps, and the address sanitizer says where: texts for each place take a tenth of the time to compile.
 CONFIG_sanitize := -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined
 CONFIG_sanitize += $(if $(findstring clang,$(CC)),-fsanitize-trap=undefined,-fsanitize-undefined-trap-on-error)
+# tests/threads.sh
+CONFIG_thread   := -O1 -g1 -fno-omit-frame-pointer -fsanitize=thread
 CONFIG_coverage := -O0 -g --coverage
 CONFIG_fuzz     := $(CONFIG_sanitize) -fsanitize=fuzzer-no-link
 ifndef CONFIG_$(config)
-$(error config=$(config) is not known: release, debug, sanitize, coverage, fuzz or lab)
+$(error config=$(config) is not known: release, debug, sanitize, thread, coverage, fuzz or lab)
 endif
 
 # -ffp-contract=off and no -ffast-math: the CPU references are compared with the GPU bit for bit
