@@ -80,7 +80,8 @@ static void *live(void *context) {
     renderer *r = context;
     masu_session s;
     r->random = 55, r->good = r->bad = 0, r->hash = 0xCBF29CE484222325u;
-    for (uint32_t i = 0; i < LIVES && !*r->error; i++) {
+    bool good = true;
+    for (uint32_t i = 0; i < LIVES && good; i++) {
         masu_session_desc d = {.scene_path = r->scene};
         d.desc.output = (VkExtent2D){WIDTH, HEIGHT};
         d.desc.targets.storage = 1;
@@ -90,21 +91,23 @@ static void *live(void *context) {
         d.desc.reserve = (masu_reserve){
             .models = 3, .lights = 3, .textures = 2, .texture_size = {16, 16}};
         d.desc.mutable_materials = d.desc.double_positions = 1;
-        if (!masu_session_open(&d, &s, r->error, sizeof r->error)) break;
-        for (uint32_t k = 0; k < r->frames && draw(r, &s); k++) {
-            for (uint32_t c = 0; c < CALLS; c++) {
+        good = masu_session_open(&d, &s, r->error, sizeof r->error);
+        if (!good) break;
+        for (uint32_t k = 0; k < r->frames && good; k++) {
+            good = draw(r, &s);
+            for (uint32_t c = 0; c < CALLS && good; c++) {
                 masu_detail detail;
                 masu_result result = live_call(r, s.m, &detail);
                 r->good += result == MASU_OK;
                 r->bad += result != MASU_OK;
-                if (result == MASU_OK || result == MASU_ERROR_ARGUMENT ||
-                    result == MASU_ERROR_LIMIT || result == MASU_ERROR_STATE)
-                    continue;
-                snprintf(r->error, sizeof r->error, "%s", detail.text);
+                good = result == MASU_OK || result == MASU_ERROR_ARGUMENT ||
+                       result == MASU_ERROR_LIMIT || result == MASU_ERROR_STATE;
+                if (!good) snprintf(r->error, sizeof r->error, "%s", detail.text);
             }
         }
         masu_session_close(&s);
     }
+    if (good) *r->error = '\0'; /* a call that succeeds may have written to it */
     return NULL;
 }
 

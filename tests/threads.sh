@@ -7,7 +7,8 @@ cd "$(dirname "$0")/.." || exit 1
 build=$(realpath "${BUILD:-build/thread}")
 made=$(realpath "${MADE:-build}")
 drivers=${DRIVERS:-system}
-[ "$drivers" != all ] || drivers="system lavapipe-25" # SwiftShader has locks of its own, which the sanitizer sees not
+# SwiftShader, all in C++ and with schedulers of its own, is left out.
+[ "$drivers" != all ] || drivers="system lavapipe-25"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp print_suppressions=0 exitcode=66 history_size=4 ${TSAN_OPTIONS:-}"
@@ -28,9 +29,9 @@ for driver in $drivers; do
     (
         icd=$(tests/drivers.sh "$driver") || exit 1
         export VK_ICD_FILENAMES=$icd VK_DRIVER_FILES=$icd NODEVICE_SELECT=1 LP_NUM_THREADS=2
-        export MESA_SHADER_CACHE_DIR=$made/cache/$driver
         # shellcheck disable=SC1090
         [ ! -e "build/drivers/$driver/env" ] || . "build/drivers/$driver/env"
+        export MESA_SHADER_CACHE_DIR=$made/cache/$driver${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
         try "renderers, $driver" "$build/tests/threads" "$made/scenes/test_reserve.masu" "${FRAMES:-20}"
         [ $failed = 0 ]
     ) || failed=1
