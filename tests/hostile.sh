@@ -41,13 +41,17 @@ draw() (
     # As in run.sh: other widths of vectors have other code.
     export MESA_SHADER_CACHE_DIR=$cache/$1${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
     mkdir -p "$MESA_SHADER_CACHE_DIR"
-    exec timeout 60 "$masu" render "$folder/x.masu" --frame -o "$folder/x.png" --size 64x64 --quiet \
+    exec timeout 180 "$masu" render "$folder/x.masu" --frame -o "$folder/x.png" --size 64x64 --quiet \
         > "$folder/stdout" 2> "$folder/render"
 )
 
-# drawn: exit 1 with $driver set if one of them fails
+# drawn: if one of them fails, exit 1 with $driver and the exit code in $code (124: not within 180 s) set
 drawn() {
-    for driver in $drivers; do draw "$driver" || return 1; done
+    for driver in $drivers; do
+        draw "$driver"
+        code=$?
+        [ $code = 0 ] || return 1
+    done
 }
 
 while read -r file; do
@@ -67,7 +71,7 @@ while read -r file; do
         if [ ! -s "$folder/x.masu" ]; then
             wrong "no output"
         elif ! drawn; then
-            wrong "does not render on $driver: $(head -c 200 "$folder/render")"
+            wrong "does not render on $driver, exit code $code: $(head -c 200 "$folder/render")"
         elif grep -q 'warning:' "$folder/stderr"; then
             note "blob, with warnings"
         else

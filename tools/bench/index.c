@@ -58,11 +58,11 @@ static bool put_scene(FILE *f, const char *folder, const char *name, char *error
     }
     if (good && masu_verdict_find(rungs, found, &v)) {
         masu_markup(f,
-                    "</td><td class=\"%s\">%s</td><td>%u of %u: %s</td><td>%.2f</td><td>%.4f</td>",
-                    v.holds ? "holds" : "bad", v.holds ? "holds" : "no rung holds", v.rung, found,
-                    rungs[v.rung]->setting, v.ms, v.error);
-        masu_markup(f, "<td>%ux%u</td><td>%s</td><td>%s</td></tr>\n", l->width, l->height, l->date,
-                    l->driver);
+                    "</td><td class=\"%s\">%s</td><td>%.2f</td><td>%.4f</td>",
+                    v.holds ? "holds" : "bad", v.holds ? "holds" : "no rung holds", v.ms, v.error);
+        masu_markup(f, "<td class=\"text\">%u of %u: %s</td><td>%ux%u</td><td>%s</td>", v.rung,
+                    found, rungs[v.rung]->setting, l->width, l->height, l->date);
+        masu_markup(f, "<td class=\"text\">%s</td></tr>\n", l->driver);
     } else if (good) {
         fputs("</td><td>no times</td>", f);
         for (int column = 2; column < 8; column++) fputs("<td>-</td>", f);
@@ -113,8 +113,8 @@ bool masu_bench_index(const char *folder, uint32_t *count, char *error, size_t e
             "<p>Verdict: the first rung, in falling quality, whose median frame takes at most "
             "%.2f ms (60 Hz), or else the fastest rung.</p>\n"
             "<div class=\"wide\"><table class=\"sort\">\n"
-            "<tr><th>scene</th><th>verdict</th><th>rung</th><th>ms</th><th>error</th><th>size</th>"
-            "<th>date</th><th>driver</th></tr>\n",
+            "<tr><th>scene</th><th>verdict</th><th>ms</th><th>error</th><th class=\"text\">rung</th>"
+            "<th>size</th><th>date</th><th class=\"text\">driver</th></tr>\n",
             MASU_PAGE_BUDGET_MS);
     }
     for (uint32_t i = 0; f && i < *count && good; i++)
