@@ -85,7 +85,7 @@ static const char head[] =
     "@media (prefers-color-scheme: dark) {\n"
     "  :root { --text: #ddd; --back: #16181b; --line: #3a3d42; --rung: #3a2b18; --link: #8ab8ff;\n"
     "          --good: #17351f; --bad: #43201c; }\n"
-    "  img.plot { filter: invert(.91) hue-rotate(180deg); } }\n"
+    "  img.plot { filter: invert(.91) hue-rotate(180deg) brightness(1.35); } }\n"
     "body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em;\n"
     "       color: var(--text); background: var(--back); overflow-wrap: anywhere; }\n"
     "a { color: var(--link); }\n"
