@@ -303,7 +303,7 @@ compdb: ## write compile_commands.json (with bear)
 clean: ## remove the builds of all configurations; keeps build/drivers
 	$(V)[ ! -d build ] || find build -mindepth 1 -maxdepth 1 ! -name drivers -exec rm -rf {} +
 help: ## print this text
-	@echo "make [TARGET] [config=release|debug|sanitize|coverage|lab] [CC=gcc|clang] [WERROR=1] [V=]"
+	@echo "make [TARGET] [config=release|debug|sanitize|thread|coverage|lab] [CC=gcc|clang] [WERROR=1] [V=]"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1 \2/p' $(filter Makefile %.mk,$(MAKEFILE_LIST)) | \
 	    while read -r target text; do printf '  %-14s %s\n' "$$target" "$$text"; done
 
