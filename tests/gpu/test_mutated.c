@@ -173,7 +173,7 @@ static void mutated_scenes_are_refused_or_drawn(void **state) {
         }
         print_message("%-20s %5u mutants: %u refused, %u beyond the device, %u drawn\n", now_scene,
                       count, n.refused, n.too_much, n.drawn);
-        if (count > 1) assert_true(n.refused && n.drawn);
+        if (count > 1) assert_true(n.refused && n.drawn > 1); /* not only number 0 */
         masu_pipelines_destroy(&s.desc.vulkan, &pool);
         close_session(&s);
         free(seed);
