@@ -53,8 +53,8 @@ uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t 
 bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,
                          size_t row_bytes, char *error, size_t error_size);
 
-/* JPEG in memory, without alpha; quality 1 to 100. Returns the bytes that it needs, of which the first
- * `most` are in `bytes`. 0: the size or the quality is not allowed. */
+/* JPEG in memory, without alpha; quality 1 to 100. Returns the bytes that it needs, of which the
+ * first `most` are in `bytes`. 0: the size or the quality is not allowed. */
 size_t masu_image_encode_jpeg(const uint8_t *rgba, uint32_t width, uint32_t height, int quality,
                               uint8_t *bytes, size_t most);
 

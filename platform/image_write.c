@@ -1,5 +1,6 @@
-/* image_write.c: encodes PNG and JPEG by stb (image.h). Apart from image.c, because stb's JPEG writer
- * shifts bits out of signed integers, which the sanitizer allows in this file alone (platform.mk). */
+/* image_write.c: encodes PNG and JPEG by stb (image.h). Apart from image.c, because stb's JPEG
+ * writer shifts bits out of signed integers, which the sanitizer allows in this file alone
+ * (platform.mk). */
 #include "image.h"
 #include "image_parts.h"
 
@@ -21,8 +22,8 @@ bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, 
     }
     size_t row = row_bytes ? row_bytes : (size_t)width * 4;
     if (row < (size_t)width * 4 || row > 0x7FFFFFFFu) {
-        return masu_image_fail(error, error_size, "%s: rows of %zu bytes do not hold %u pixels", path, row,
-                    width);
+        return masu_image_fail(error, error_size, "%s: rows of %zu bytes do not hold %u pixels",
+                               path, row, width);
     }
     int count = 0;
     unsigned char *bytes =

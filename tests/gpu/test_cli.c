@@ -120,8 +120,8 @@ static void an_index_links_the_reports_of_a_folder(void **state) {
     assert_int_equal(cli_run("bench --index %s/all --quiet", scratch), 0);
     assert_string_equal(cli_out, "");
     /* One scene that cannot be read: no page is better than one without it. */
-    assert_int_equal(shell("echo '[' > %s/all/b/ladder.json && rm %s/all/index.html", scratch, scratch),
-                     0);
+    assert_int_equal(
+        shell("echo '[' > %s/all/b/ladder.json && rm %s/all/index.html", scratch, scratch), 0);
     assert_int_equal(cli_run("bench --index %s/all", scratch), 1);
     snprintf(to, sizeof to, "%s/all/b/ladder.json", scratch);
     cli_complained(to);

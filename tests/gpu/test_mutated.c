@@ -3,8 +3,8 @@
  * is finite, the validation layer stays silent, and nothing dies. The words of SPIR-V are left as
  * they are: their meaning is the driver's to judge, not the reader's.
  *
- * MUTATED=N tries N of each scene, LONG=1 1,000; else a few of two scenes. MUTATED_FROM=I begins with
- * number I of each, to repeat one. */
+ * MUTATED=N tries N of each scene, LONG=1 1,000; else a few of two scenes. MUTATED_FROM=I begins
+ * with number I of each, to repeat one. */
 #include "support/files.h"
 #include "support/random.h"
 #include "support/support.h"

@@ -67,7 +67,7 @@ static void labels_keep_away_from_lines(void **state) {
     assert_true(masu_labels_place(&l, at, "name", 10, out));
     assert_true(out[1] > 0.01); /* above the line */
     l = chart();
-    masu_labels_line(&l, (const double[]){1.5, 0.0011}, (const double[]){1.5, 0.099}); /* far right */
+    masu_labels_line(&l, (const double[]){1.5, 0.0011}, (const double[]){1.5, 0.099}); /* apart */
     masu_labels_line(&l, far, far);
     assert_true(masu_labels_place(&l, at, "name", 10, out));
     assert_float_equal(out[1], 0.01, 1e-9);
