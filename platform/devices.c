@@ -56,19 +56,21 @@ void masu_device_row_deny(const masu_device_row *row, VkPhysicalDeviceFeatures *
 
 /* ---- Replaced functions ---------------------------------------------------------------------- */
 
-static const masu_device_row *imposed;
+static const masu_device_row *_Atomic imposed_row; /* sessions in several threads set it */
 
-void masu_device_row_impose(const masu_device_row *row) { imposed = row; }
+void masu_device_row_impose(const masu_device_row *row) { imposed_row = row; }
 
 static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties *out) {
     vkGetPhysicalDeviceProperties(device, out);
+    const masu_device_row *imposed = imposed_row;
     if (imposed) masu_device_row_limit(imposed, out);
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
                                                VkPhysicalDeviceFeatures2 *out) {
     vkGetPhysicalDeviceFeatures2(device, out);
+    const masu_device_row *imposed = imposed_row;
     if (imposed) masu_device_row_deny(imposed, &out->features);
 }
 
@@ -82,6 +84,7 @@ static VKAPI_ATTR void VKAPI_CALL get_core_features(VkPhysicalDevice device,
 static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *n,
                                                VkQueueFamilyProperties *out) {
     vkGetPhysicalDeviceQueueFamilyProperties(device, n, out);
+    const masu_device_row *imposed = imposed_row;
     for (uint32_t i = 0; imposed && !imposed->timestamps && out && i < *n; i++)
         out[i].timestampValidBits = 0;
 }

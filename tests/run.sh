@@ -36,7 +36,7 @@ drivers=${DRIVERS:-system}
 jobs=${MASU_TEST_JOBS:-$(nproc)}
 # Tests of programs, of what a validation layer says of shaders, and of the host alone hardly depend on the driver: the
 # first driver that is there runs them.
-once=" test_bench test_cli test_gpu_av test_reference test_soak "
+once=" test_bench test_cli test_gpu_av test_mutated test_reference test_soak "
 # Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
 # lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it (frame,
 # fixed_memory, upscale); what SwiftShader runs as well (area_lights, far, faults, output, picture_sky, poison, smaa,

@@ -63,6 +63,9 @@ $(BUILD)/tests/gpu/%: $(BUILD)/obj/tests/gpu/%.o $(KEEP_LOADED) $(TEST_ARCHIVES)
 	$(link)
 $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_ARCHIVES)
 	$(link)
+$(BUILD)/tests/threads: LIBS = $(MASU_LIBS)
+$(BUILD)/tests/threads: $(BUILD)/obj/tests/threads.o $(KEEP_LOADED) $(PLATFORM)
+	$(link)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
 
@@ -109,6 +112,13 @@ $(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
 .PHONY: stability
 stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme inputs, conditions and measured values on three drivers
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tests/stability.sh
+
+# The thread sanitizer: minutes, most of them to compile.
+.PHONY: threads threads-built
+threads: $(GENERATED) $(MADE)/scenes/test_reserve.masu $(MADE)/stiff/blend.masu $(MADE)/stiff/blend.truth.so $(MADE)/textures/made ## run four renderers in four threads, and the threads of the programs, under the thread sanitizer: DRIVERS=
+	+$(V)$(more) config=thread BUILD='$(BUILD)/thread' MADE='$(MADE)' threads-built
+threads-built: $(BUILD)/tests/threads $(BUILD)/bin/masu $(BUILD)/bin/masu-bake
+	$(V)BUILD='$(BUILD)' MADE='$(MADE)' DRIVERS='$(DRIVERS)' tests/threads.sh
 
 # Random rungs, cameras, scenes, sizes; the tests do a twentieth of it.
 .PHONY: soak
