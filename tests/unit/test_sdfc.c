@@ -747,6 +747,10 @@ static void mistakes_name_their_place(void **state) {
         {"let a = 1;\npart b = spher(1);",
          "x.sdf:2:10: expected a shape, found \"spher\": did you mean \"sphere\"?\n"
          "part b = spher(1);\n         ^"},
+        {"part a = tarus(2, 1);", /* one letter of five; two are too many */
+         "x.sdf:1:10: expected a shape, found \"tarus\": did you mean \"torus\"?\n"
+         "part a = tarus(2, 1);\n         ^"},
+        {"part a = taris(2, 1);", "x.sdf:1:10: expected a shape, found \"taris\""},
         {"part a = box(1, 2);", "x.sdf:1:15: expected \")\", found \",\""},
         {"part a = sphere((1, 2, 3));", "x.sdf:1:17: expected a number, found three numbers"},
         {"part a : gold = sphere(1);", "x.sdf:1:10: expected a material, found \"gold\""},
