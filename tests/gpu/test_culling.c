@@ -247,9 +247,9 @@ static void shadows_are_the_same_without_culling(void **state) {
     assert_true(slow[NEITHER] > 0 && 4 * slow[NEITHER] * frames < 3 * every[NEITHER] * slow_frames);
 }
 
-/* A plate is all that the camera sees. A box above it, out of view, passes over it: the shadow map's
- * texels are so large that its shadow reaches the plate through the filter alone, from up to two
- * texels away. */
+/* A plate is all that the camera sees. A box above it, out of view, passes over it: the texels of
+ * the shadow map are so large that the box's shadow reaches the plate through the filter alone,
+ * from up to two texels away. */
 static void a_shadow_that_only_the_filter_reaches_is_drawn(void **state) {
     (void)state;
     enum { STEPS = 48 };
@@ -295,7 +295,8 @@ static void a_slow_cascade_has_the_lods_of_its_rung(void **state) {
     enum { FINE, COARSE, RESOLUTION = 64, BYTES_OF_MAP = RESOLUTION * RESOLUTION * 4 };
     static const char scene[] =
         "{\"lods\": 3, \"models\": [{\"mesh\": {\"plane\": {\"size_x\": 6, \"size_z\": 6}}},"
-        "{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 4}}, \"translate\": [0, 1.5, 0]}],"
+        "{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 4}}, \"translate\": [0, 1.5, "
+        "0]}],"
         "\"camera\": {\"keys\": [{\"position\": [0, 3, 6], \"target\": [0, 0.5, 0]}]},"
         "\"sun\": {\"azimuth\": 20, \"elevation\": 50, \"shadows\": {\"cascades\": 1, "
         "\"resolution\": 64, \"distance\": 20}}, \"reflections\": false}";
@@ -316,8 +317,8 @@ static void a_slow_cascade_has_the_lods_of_its_rung(void **state) {
             masu_frame_desc f = {.rung = alone || n == 2 ? COARSE : FINE, .cut = n == 0};
             draw(&s, &f, &commands, NULL);
             if (!alone && n == 0) continue;
-            memcpy(map[alone ? 2 : n - 1],
-                   read_image(&s, commands.slot, MASU_READBACK_SHADOW_MAP), BYTES_OF_MAP);
+            memcpy(map[alone ? 2 : n - 1], read_image(&s, commands.slot, MASU_READBACK_SHADOW_MAP),
+                   BYTES_OF_MAP);
         }
         close_session(&s);
     }

@@ -120,8 +120,8 @@ static void make_fence(char *text, size_t size) {
              "\"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}");
 }
 
-/* A rough metal floor before a wall of bars, white and black, in front of which stands a red wall of
- * bars with the same luma. */
+/* A rough metal floor before a wall of white and black bars, in front of which stands a red wall with
+ * the same mean luma. */
 static void make_bars(char *text, size_t size) {
     size_t at = (size_t)snprintf(
         text, size,
@@ -151,8 +151,10 @@ static const char spark[] =
     "{\"mesh\": {\"box\": {\"size\": [0.1, 0.1, 0.1]}}, \"translate\": [0, 1, -1], \"material\": "
     "{\"base_color\": [0, 0, 0], \"emissive\": [400, 400, 400], \"roughness\": 1}, "
     "\"area_light\": false}],"
-    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"time\": 0, \"position\": [0, 2.2, 5],"
-    "\"target\": [0, 0.2, 0]}, {\"time\": 4, \"position\": [2, 1.8, 4.6], \"target\": [0, 0.2, 0]}]},"
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"time\": 0, \"position\": [0, 2.2, "
+    "5],"
+    "\"target\": [0, 0.2, 0]}, {\"time\": 4, \"position\": [2, 1.8, 4.6], \"target\": [0, 0.2, "
+    "0]}]},"
     "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0, 0, 0],"
     "\"sky\": {\"zenith\": [0.2, 0.2, 0.2], \"horizon\": [0.2, 0.2, 0.2]},"
     "\"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}";
@@ -541,7 +543,7 @@ static void what_glides_over_a_mirror_leaves_no_trail(void **state) {
 }
 
 /* The wall in front disappears: the luma of the floor's reflection stays, so that only its colour
- * shows that the history is another wall's. Four frames later the floor has lost most of the red. */
+ * shows that the history is another wall's. Four frames later most of the red is gone. */
 static void the_color_of_what_has_gone_is_forgotten(void **state) {
     (void)state;
     enum { BEFORE = 24, AFTER = 4 };

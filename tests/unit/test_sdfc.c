@@ -503,10 +503,11 @@ static void parts_of_one_form_share_its_code(void **state) {
     assert_true(result.slots[head + 7] == 7);
     assert_int_equal(count(result.glsl, "masu_slot_write("), 50);
     masu_sdfc_release(&result);
-    static const char own[] = "for i in 0..4 { part a = translate((i, 0, 0), glsl { return length(p) - 0.4; } "
-                              "bounds (-1, -1, -1), (1, 1, 1) lipschitz 1); }\n"
-                              "part b = glsl { return length(p) - 0.5; } bounds (-1, -1, -1), (1, 1, 1) "
-                              "lipschitz 1;\n";
+    static const char own[] =
+        "for i in 0..4 { part a = translate((i, 0, 0), glsl { return length(p) - 0.4; } "
+        "bounds (-1, -1, -1), (1, 1, 1) lipschitz 1); }\n"
+        "part b = glsl { return length(p) - 0.5; } bounds (-1, -1, -1), (1, 1, 1) "
+        "lipschitz 1;\n";
     assert_compiles(own, sizeof own - 1, &result);
     assert_int_equal(result.part_count, 5);
     assert_int_equal(result.shape_count, 2);
