@@ -120,8 +120,8 @@ static void make_fence(char *text, size_t size) {
              "\"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}");
 }
 
-/* A rough metal floor before a wall of white and black bars, in front of which stands a red wall with
- * the same mean luma. */
+/* A rough metal floor before a wall of white and black bars, and in front of that a red wall of the
+ * same mean luma. */
 static void make_bars(char *text, size_t size) {
     size_t at = (size_t)snprintf(
         text, size,
