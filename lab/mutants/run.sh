@@ -83,14 +83,14 @@ tests_of() {
     esac
 }
 
-# keep KIND PREFIX WORD...: the words that name tests of that kind.
+# existing KIND WORD...: the words that name tests of that kind; NAME.sh for a script.
 existing() {
     local kind=$1 name
     shift
     for name; do
-        [ -e "tests/$kind/test_$name.c" ] && echo "$name" && continue
-        [ "$kind" = unit ] && [ -e "tests/scripts/$name.sh" ] && echo "$name"
-    done | sort -u | tr '\n' ' '
+        [ ! -e "tests/$kind/test_$name.c" ] || echo "$name"
+        [ "$kind" != unit ] || [ ! -e "tests/scripts/$name.sh" ] || echo "$name.sh"
+    done | tr '\n' ' '
 }
 
 # built TREE TARGET...: makes only these. A shader that no scene holds needs no optimiser and bakes nothing.
@@ -110,8 +110,8 @@ run_test() {
     local in=$1 kind=$2 name=$3 program log pid failed=
     program=build/tests/$kind/test_$name
     log=$in/build/test-results
-    if [ -e "$in/tests/scripts/$name.sh" ] && [ "$kind" = unit ]; then
-        kind=script program=tests/scripts/$name.sh
+    if [[ $name == *.sh ]]; then
+        kind=script program=tests/scripts/$name
         built "$in" build/bin/masu build/bin/masu-bake build/bin/masu-sdfc || return 1
     else
         built "$in" "$program" build/tests/driver_info || return 1
