@@ -166,7 +166,7 @@ judge() {
     # shellcheck disable=SC2046,SC2086
     attempt gpu $(existing gpu $gpu) || return
     # shellcheck disable=SC2046
-    [ ! "${OTHERS:-}" ] || attempt unit $(cd "$work/tests/unit" && ls test_*.c | sed 's/^test_//; s/\.c$//') || return
+    [ ! "${OTHERS:-}" ] || attempt unit $(find "$work/tests/unit" -name 'test_*.c' | sed 's/.*test_//; s/\.c$//') || return
     verdict=survived
 }
 
