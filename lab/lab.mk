@@ -28,7 +28,7 @@ study isa-table ladders ladder-costs ladder-devices gallery:
 	+$(V)$(lab_make) $@
 
 .PHONY: mutants
-mutants: all $(UNIT_TESTS) $(GPU_TESTS) $(DRIVER_INFO) ## try the mutants of lab/mutants/drawn.tsv (hours): MUTANTS_DIR=/tmp/masu-mutants DRIVERS=system WANTED=60
+mutants: all $(UNIT_TESTS) $(GPU_TESTS) $(DRIVER_INFO) ## try the mutants of lab/mutants/drawn.tsv (an hour): MUTANTS_DIR=/tmp/masu-mutants DRIVERS=system WANTED=12
 	$(V)DRIVERS='$(DRIVERS)' lab/mutants/run.sh $(BUILD)/mutants.tsv
 
 .PHONY: light

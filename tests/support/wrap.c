@@ -288,7 +288,9 @@ static VKAPI_ATTR void VKAPI_CALL cmd_barrier(VkCommandBuffer cmd, VkPipelineSta
 
 static VKAPI_ATTR void VKAPI_CALL cmd_fill(VkCommandBuffer cmd, VkBuffer buffer,
                                            VkDeviceSize offset, VkDeviceSize size, uint32_t word) {
-    wrap.fills_of_poison += word == 0x7FC07FC0u || word == 0x7C007C00u || word == 0x3C007FC0u;
+    bool poison = word == 0x7FC07FC0u || word == 0x7C007C00u || word == 0x3C007FC0u;
+    wrap.fills_of_poison += poison;
+    if (poison) wrap.poison = word;
     real_fill(cmd, buffer, offset, size, word);
 }
 
