@@ -701,7 +701,7 @@ static void few_registers_change_nothing(void **state) {
                 continue;
             }
             assert_int_equal(first[i], hdr[i]);
-            bright += half_float(hdr[i]) > 0.01f;
+            bright += half_float(hdr[i]) > 0.01;
         }
         close_session(&l.s);
     }
