@@ -13,9 +13,6 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#ifdef MASU_LOCAL_SHADOWS
-#define MASU_SHELVED masu_few_registers
-#endif
 #include "push/light.h"
 #include "shared/counters.h"
 #include "shared/lights.h"
@@ -139,20 +136,12 @@ void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 re
     uvec2 tile = gl_WorkGroupID.xy / uint(MASU_TILE / MASU_GROUP);
     masu_asked asked = masu_lights_asked(tile, size, push.light_tiles != 0u);
     masu_light_sum sum = masu_light_sum(color);
-#ifdef MASU_SHELVED
-    masu_shelved_bsdf shelf = masu_shelve(b);
-#endif
     uint reached = 0u;
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {
             break;
         }
-#ifdef MASU_SHELVED
-        bool reaches = masu_add_local_light(sum, s, b, shelf, masu_light_asked(asked, i), rel, n, traced);
-#else
-        bool reaches = masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced);
-#endif
-        reached += reaches ? 1u : 0u;
+        reached += masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
     }
     color = sum.light;
     masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);

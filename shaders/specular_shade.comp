@@ -12,7 +12,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any hit may have a coat */
 #define MASU_LOCAL_SHADOWS_FOUR /* four taps, not nine: fewer registers, as MASU_SHELVED */
-#define MASU_SHELVED true
+#define MASU_SHELVED
 #include "push/specular_shade.h"
 #include "shared/lights.h"
 #include "shared/trace.h"

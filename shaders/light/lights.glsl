@@ -301,9 +301,7 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
         }
     }
 #ifdef MASU_SHELVED
-    if (MASU_SHELVED) {
-        masu_unshelve(shelf, b);
-    }
+    masu_unshelve(shelf, b);
 #endif
     vec3 color = light.color.rgb * strength;
     bool directed = true;

@@ -25,7 +25,7 @@
 #include "light/probes.glsl"
 #endif
 
-/* On Mali and the Raspberry Pi values are loaded or unpacked again instead of kept: 64 registers for
+/* On Mali and the Raspberry Pi lights are loaded again instead of kept: 64 registers for
  * each thread, and on Mali twice the threads at 32. Elsewhere that would only be more instructions. */
 layout(constant_id = 26) const bool masu_few_registers = false;
 
@@ -231,7 +231,7 @@ masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
 #endif
 }
 
-#ifdef MASU_SHELVED /* a condition: true, or masu_few_registers */
+#ifdef MASU_SHELVED
 /* The colours and related values of a bsdf that only the end of a light's evaluation needs. */
 struct masu_shelved_bsdf {
     uvec2 f0, rest, diffuse, matte;

@@ -668,8 +668,8 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL mali_proc(VkInstance instance, c
     return real_proc(instance, name);
 }
 
-/* Their shaders load and unpack values again, some as half floats (masu_few_registers). */
-static void few_registers_change_only_rounding(void **state) {
+/* Their shaders load lights again instead of keeping them (masu_few_registers). */
+static void few_registers_change_nothing(void **state) {
     (void)state;
     enum { WIDTH = 96, HEIGHT = 60, VALUES = WIDTH * HEIGHT * 4 };
     static uint16_t first[VALUES];
@@ -681,8 +681,7 @@ static void few_registers_change_only_rounding(void **state) {
                "\"half_u\": [0.5, 0, 0], \"half_v\": [0, 0, 0.25], \"intensity\": 4, "
                "\"range\": 14}");
     bake_scene("lamp_registers", json);
-    uint32_t bright = 0, different = 0;
-    double worst = 0;
+    uint32_t bright = 0;
     for (int pass = 0; pass < 2; pass++) {
         lamps l = {.width = WIDTH, .height = HEIGHT};
         char error[256];
@@ -701,18 +700,12 @@ static void few_registers_change_only_rounding(void **state) {
                 first[i] = hdr[i];
                 continue;
             }
-            double a = half_float(first[i]), b = half_float(hdr[i]);
-            bright += a > 0.01;
-            different += a != b;
-            if (fabs(a - b) > worst * fmax(a, 1e-3)) worst = fabs(a - b) / fmax(a, 1e-3);
+            assert_int_equal(first[i], hdr[i]);
+            bright += half_float(hdr[i]) > 0.01f;
         }
         close_session(&l.s);
     }
-    print_message("few registers: %u of %u values differ, by %.2e at most\n", different, bright,
-                  worst);
     assert_true(bright > VALUES / 4);
-    assert_true(different > 0); /* the other form ran */
-    assert_true(worst < 2e-3);  /* two steps of a half float */
 }
 
 int main(void) {
@@ -725,7 +718,7 @@ int main(void) {
         cmocka_unit_test(shadows_come_and_go_by_steps),
         cmocka_unit_test(a_point_that_moves_keeps_its_walls),
         cmocka_unit_test(lights_come_and_go),
-        cmocka_unit_test(few_registers_change_only_rounding),
+        cmocka_unit_test(few_registers_change_nothing),
         cmocka_unit_test(nothing_is_planned_where_no_light_casts),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
