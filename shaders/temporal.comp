@@ -52,8 +52,7 @@ void main()
          blue = textureGather(color_image, gather, 2);
     green += masu_root_rest * textureGather(color_image, gather, 3);
     uvec2 found = texelFetch(found_image, ivec2(texel), 0).xy;
-    masu_history_frame now = masu_history_frame_of();
-    masu_past old = masu_history(found, vec2(at) + 0.5, ivec2(texel), inside, steps, now);
+    masu_past old = masu_history(found, vec2(at) + 0.5, ivec2(texel), inside, steps);
 
     /* Stationary pixels of an unchanged scene: a sample contributes to the output pixel that
      * contains it, plus a small border. Other pixels have few samples, so they use a tent filter
@@ -73,5 +72,5 @@ void main()
     weights += rest * around;
     vec3 sum = old.mean.a * old.mean.rgb + vec3(dot(weights, red * red), dot(weights, green * green), dot(weights, blue * blue));
     vec3 light = sum * (1.0 / max(count, 1.0));
-    masu_show(ivec2(at), light, count, old, stays, masu_chance(at), now);
+    masu_show(ivec2(at), light, count, old, stays, masu_chance(at));
 }

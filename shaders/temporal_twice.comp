@@ -40,7 +40,6 @@ struct cell {
     vec2 inside_x, inside_y; /* 1 for a texel of the image, 0 outside: no sample */
     vec3 light[4];
     uint chance; /* of the first pixel */
-    masu_history_frame now;
 };
 
 /* Resolves one of the four pixels. A function that is called four times, not a loop: the cost model
@@ -54,7 +53,7 @@ void resolve(cell c, ivec2 way)
     vec2 f = vec2(column.x, row.x);
     vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* < 0: the sampler
                                                                            * clamps */
-    masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0), c.now);
+    masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
     vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * c.inside_y;
@@ -73,7 +72,7 @@ void resolve(cell c, ivec2 way)
                                                                                * uint */
         vec3 mean = sum * (1.0 / max(count, 1.0));
         uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
-        masu_show(at, mean, count, old, stays, c.chance + other, c.now);
+        masu_show(at, mean, count, old, stays, c.chance + other);
     }
 }
 
@@ -81,7 +80,6 @@ void main()
 {
     cell c;
     ivec2 number = ivec2(gl_GlobalInvocationID.xy);
-    c.now = masu_history_frame_of();
     c.first = 2 * number + ivec2(frame.between.xy) - 2;
     c.before = number + ivec2(frame.between.zw);
     ivec2 last = ivec2(pc.render_width, pc.render_height) - 1;

@@ -243,9 +243,11 @@ bool masu_spirv_reach(const spirv_module *m, const VkSpecializationInfo *special
 
 /* ---- Cost ------------------------------------------------------------------------------------ */
 
-/* Mesa unrolls a loop of a constant number of iterations if its copies stay below this number of
- * instructions (nir_opt_loop_unroll: 26 for each of at most 32 iterations). */
-enum { UNROLLED_ITERATIONS = 32, UNROLLED_INSTRUCTIONS = 26 * UNROLLED_ITERATIONS };
+/* Mesa unrolls a loop of at most 32 iterations if its copies stay below 832 of its own instructions
+ * (nir_opt_loop_unroll), two to three per operation. Of the loops of mirrors, wet_city and engine,
+ * none below this limit and with one exit remains in the code for Iris Xe. Some above do not
+ * either: they count once, which overestimates their pass. */
+enum { UNROLLED_ITERATIONS = 32, UNROLLED_OPERATIONS = 320 };
 
 static bool integer(const spirv_module *m, uint32_t id, int64_t *out) {
     const spirv_instruction *d = spirv_def(m, id);
@@ -281,6 +283,19 @@ static size_t loop_of(const spirv_module *m, size_t k) {
     return 0;
 }
 
+/* Whether only the condition of the loop between its header and its merge block, from..to - 1,
+ * leaves it. */
+static bool has_one_exit(const spirv_module *m, uint32_t merge, size_t from, size_t to) {
+    uint32_t exits = 0;
+    for (size_t k = from; k < to; k++) {
+        const spirv_instruction *i = &m->list[k];
+        if (i->op == SPIRV_BRANCH) exits += i->word[1] == merge;
+        if (i->op == SPIRV_BRANCH_CONDITIONAL)
+            exits += i->word[2] == merge || i->word[3] == merge;
+    }
+    return exits == 1;
+}
+
 /* Cost of the instructions from..to - 1, the bodies of unrolled loops once per iteration. rolled:
  * set if a loop remains. Blocks of a loop are between its header and its merge block. */
 static masu_spirv_cost cost_between(const spirv_module *m, const bool *inside, size_t from,
@@ -302,8 +317,8 @@ static masu_spirv_cost cost_between(const spirv_module *m, const bool *inside, s
         bool inner = false;
         masu_spirv_cost body = cost_between(m, inside, k + 1, end, &inner);
         int64_t times = inner ? 0 : iterations(m, &m->list[loop + 1]);
-        bool unrolled = times > 0 && times <= UNROLLED_ITERATIONS &&
-                        times * body.plain <= UNROLLED_INSTRUCTIONS;
+        bool unrolled = times > 0 && has_one_exit(m, m->list[loop].word[1], k, end) && times <= UNROLLED_ITERATIONS &&
+                        times * body.plain <= UNROLLED_OPERATIONS;
         if (!unrolled) *rolled = true;
         sum.plain += body.plain * (unrolled ? (uint32_t)times : 1u);
         sum.weighted += body.weighted * (unrolled ? (uint32_t)times : 1u);

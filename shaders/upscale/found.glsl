@@ -115,10 +115,10 @@ vec3 masu_found_held(uvec2 found, vec3 light)
     return clamp(light, masu_found_light(found.x), masu_found_light(found.y));
 }
 
-/* Limit of the weight of the history, in samples; 0: no history. */
+/* Limit of the weight of a history that was found, in samples. */
 float masu_found_count(uvec2 found)
 {
-    return masu_is_found(found) ? uintBitsToFloat((found.x >> 27 << 21) + 0x3E000000u) : 0.0;
+    return uintBitsToFloat((found.x >> 27 << 21) + 0x3E000000u);
 }
 
 #endif

@@ -29,23 +29,9 @@ struct masu_past {
     vec3 curve; /* second difference of the colour, one pixel apart */
 };
 
-/* Values of the frame that every pixel uses. Read them once, before any branch: compilers load
- * uniforms again in each branch. */
-struct masu_history_frame {
-    vec2 shift;   /* difference of the jitter of both frames, which velocities must not include */
-    float before; /* layer of `history` that the previous frame wrote */
-    uint number;  /* of the frame */
-    uint moves;   /* MASU_TEMPORAL_* bits */
-};
-
-masu_history_frame masu_history_frame_of()
-{
-    return masu_history_frame(frame.shifts.zw, masu_layer_before(), frame.history.x, frame.temporal.z);
-}
-
 /* Catmull-Rom interpolation without its mixed term: the bilinear value minus a multiple of the
  * second difference of bilinear values one texel apart. */
-masu_past masu_history_at(vec2 place, float layer)
+masu_past masu_history_at(vec2 place)
 {
     vec2 inside = place, end = vec2(pc.output_width, pc.output_height) - 0.5;
     if (!masu_fixed_output) { /* masu_resize: the image may be larger than the output */
@@ -53,7 +39,7 @@ masu_past masu_history_at(vec2 place, float layer)
     }
     vec2 t = fract(inside - 0.5);
     vec2 bent = t * (0.5 - 0.5 * t);
-    vec3 uv = vec3(inside * vec2(push.old_x, push.old_y), layer);
+    vec3 uv = vec3(inside * vec2(push.old_x, push.old_y), masu_layer_before());
     vec4 here = textureLod(history_image, uv, 0.0);
     vec3 beside = textureLodOffset(history_image, uv, 0.0, ivec2(-1, 0)).rgb +
                   textureLodOffset(history_image, uv, 0.0, ivec2(1, 0)).rgb;
@@ -68,32 +54,34 @@ masu_past masu_history_at(vec2 place, float layer)
     return masu_past(here, curve);
 }
 
-/* The history, clamped, and its weight in samples; 0 if the pixel starts over: then it reads the
- * history at its own position, because a branch costs more.
+/* The history, clamped, and its weight in samples; 0 if the pixel starts over.
  *
  * middle: centre of the output pixel; texel: the render texel that contains it; inside: its
  * position in render texels with integer centres, clamped to the image; steps: output pixels per
  * texel. */
-masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 steps, masu_history_frame at)
+masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 steps)
 {
+    if (!masu_is_found(found)) {
+        return masu_past(vec4(0.0), vec3(0.0));
+    }
     /* A static pixel reads its texel's centre, which returns that texel: samplers round to 1/256,
      * as Direct3D requires. A texelFetch would cost a seventh more of this pass by the estimate of
      * Intel's compiler. */
     vec2 before = middle;
     bool stays = masu_has_stayed(found);
-    if (masu_is_found(found) && !stays) {
+    if (!stays) {
         /* One fetch serves both cases: another texel is read at its centre. Two fetches cost a
          * sixth more of this pass by Intel's estimate. Texels outside of the image must not be
          * read, even with a weight of 0, since they may be NaN. */
         vec2 beside = min(vec2(texel + masu_found_beside(found)), vec2(push.last_x, push.last_y));
         vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) * vec2(push.moved_x, push.moved_y);
-        vec2 moved = textureLod(velocity_image, uv, 0.0).xy + at.shift;
+        vec2 moved = textureLod(velocity_image, uv, 0.0).xy + frame.shifts.zw;
         if (masu_is_missed(found)) {
             moved = masu_thin_motion(masu_thin_of(found));
         }
         before += moved * steps;
     }
-    masu_past old = masu_history_at(before, at.before);
+    masu_past old = masu_history_at(before);
     float count = masu_mean_count(old.mean);
     /* Undefined content would remain visible for many frames. It shows as more samples than a frame
      * stores, as NaN, or as more light than the cubic filter makes of 0..1 (the last two cannot
@@ -121,15 +109,15 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
  * second difference of the history and by the history's share of the mean. (The second difference
  * of the mean is not available: other invocations compute its neighbours.) The history itself is
  * not sharpened, because that would accumulate over frames. */
-void masu_show(ivec2 at, vec3 light, float count, masu_past old, bool stays, uint chance, masu_history_frame f)
+void masu_show(ivec2 at, vec3 light, float count, masu_past old, bool stays, uint chance)
 {
     light = clamp(light, 0.0, 1.0);
-    float moving = (f.moves & MASU_TEMPORAL_MOVES) != 0u ? push.moving : masu_sharpen;
+    float moving = (frame.temporal.z & MASU_TEMPORAL_MOVES) != 0u ? push.moving : masu_sharpen;
     vec3 sharp = light + (stays ? push.calm : moving) * old.mean.a * (1.0 / max(count, 1.0)) * old.curve;
 #if defined(MASU_TEN) || defined(MASU_DEEP) /* the store does not clamp */
     sharp = clamp(sharp, 0.0, 1.0);
 #endif
-    MASU_STORE_LAYER(kept_image, at, int(f.number & 1u), masu_mean_rounded(light, count, chance));
+    MASU_STORE_LAYER(kept_image, at, masu_layer(), masu_mean_rounded(light, count, chance));
     MASU_STORE_FILTERED(target, at, masu_encoded_open(sharp, push.peak, push.white));
 }
 
