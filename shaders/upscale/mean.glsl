@@ -50,8 +50,9 @@ uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
      * instructions of packUnorm2x16. */
     float off = float(chance >> 16 & 0xFFu) * (1.0 / 256.0) - 0.5; /* below 1/2: 65535 must not
                                                                     * become 65536 */
-    vec4 steps = vec4(light * 65535.0 + off, count * (65535.0 / masu_mean_counts));
-    uvec4 bits = floatBitsToUint(steps + 12582912.0);
+    precise vec4 steps = vec4(light * 65535.0 + off, count * (65535.0 / masu_mean_counts));
+    precise vec4 whole = steps + 12582912.0; /* not merged with the constant of `off` */
+    uvec4 bits = floatBitsToUint(whole);
     return uvec4(bits.xz & 0xFFFFu | bits.yw << 16, 0u, 0u);
 }
 
