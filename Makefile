@@ -51,10 +51,12 @@ CONFIG_debug    := -O0 -g3
 # Undefined behaviour traps, and the address sanitizer says where: texts for each place take a tenth of the time to compile.
 CONFIG_sanitize := -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined
 CONFIG_sanitize += $(if $(findstring clang,$(CC)),-fsanitize-trap=undefined,-fsanitize-undefined-trap-on-error)
+# tests/threads.sh
+CONFIG_thread   := -O1 -g1 -fno-omit-frame-pointer -fsanitize=thread
 CONFIG_coverage := -O0 -g --coverage
 CONFIG_fuzz     := $(CONFIG_sanitize) -fsanitize=fuzzer-no-link
 ifndef CONFIG_$(config)
-$(error config=$(config) is not known: release, debug, sanitize, coverage, fuzz or lab)
+$(error config=$(config) is not known: release, debug, sanitize, thread, coverage, fuzz or lab)
 endif
 
 # -ffp-contract=off and no -ffast-math: the CPU references are compared with the GPU bit for bit
@@ -86,8 +88,8 @@ endif
 comma := ,
 objects = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 
-# For programs that load Vulkan drivers: lets the leak checker tell the drivers' leaks from ours.
-KEEP_LOADED := $(if $(filter sanitize,$(config)),$(BUILD)/obj/tests/keep_loaded.o)
+# For programs that load Vulkan drivers: lets sanitizers tell what the drivers do from what Masu does.
+KEEP_LOADED := $(if $(filter sanitize thread,$(config)),$(BUILD)/obj/tests/keep_loaded.o)
 
 include packages.mk shaders/shaders.mk src/src.mk platform/platform.mk tools/tools.mk package/package.mk tests/tests.mk
 
@@ -202,8 +204,8 @@ drive-long: deps-test deps-view deps-worlds ## drive a scripted lap of forza und
 	$(V)BUILD='$(BUILD)' tests/drive_long.sh $(DRIVE_ARGS)
 drive-built: $(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
 
-hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all models of assimp-testmodels, including broken ones: RENDER=1
-	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
+hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all models of assimp-testmodels, including broken ones: RENDER=1 DRIVERS=
+	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' DRIVERS='$(DRIVERS)' tests/hostile.sh
 
 .PHONY: check check-built unit gpu stiff fuzz fuzz-all coverage
 check: deps-test ## install missing packages, build, run every test: DRIVERS=system, FULL=, LONG=
@@ -301,7 +303,7 @@ compdb: ## write compile_commands.json (with bear)
 clean: ## remove the builds of all configurations; keeps build/drivers
 	$(V)[ ! -d build ] || find build -mindepth 1 -maxdepth 1 ! -name drivers -exec rm -rf {} +
 help: ## print this text
-	@echo "make [TARGET] [config=release|debug|sanitize|coverage|lab] [CC=gcc|clang] [WERROR=1] [V=]"
+	@echo "make [TARGET] [config=release|debug|sanitize|thread|coverage|lab] [CC=gcc|clang] [WERROR=1] [V=]"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1 \2/p' $(filter Makefile %.mk,$(MAKEFILE_LIST)) | \
 	    while read -r target text; do printf '  %-14s %s\n' "$$target" "$$text"; done
 

@@ -35,7 +35,7 @@ PACKAGES_plots := gnuplot-nox
 PACKAGES_lab := spirv-cross libglm-dev g++
 
 # to build the drivers of `masu-lab isa` for Intel and Adreno (make isa-drivers)
-PACKAGES_isa := meson ninja-build bison flex python3-mako libdrm-dev libexpat1-dev libelf-dev zlib1g-dev libncurses-dev
+PACKAGES_isa := meson ninja-build bison flex python3-mako python3-yaml libdrm-dev libexpat1-dev libelf-dev zlib1g-dev libncurses-dev
 PACKAGES_isa += pkgconf g++ glslang-tools curl ca-certificates
 
 # for `make reference-blender`

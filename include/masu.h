@@ -47,8 +47,9 @@
  *     wait_idle(); masu_destroy(m);                       // 6. the host may reuse the memory
  *
  * VULKAN CONTRACT
- *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
- *    and sampled image. No optional feature is required; masu_detail names a missing required one.
+ *  - Device: Vulkan 1.1, or 1.0 with VK_KHR_storage_buffer_storage_class, VK_KHR_maintenance1 and
+ *    VK_KHR_maintenance2 enabled; one queue family with graphics and compute, D32_SFLOAT as depth
+ *    attachment and sampled image. No optional feature is required; masu_detail names a missing required one.
  *    These optional features are used if the host has enabled them (masu_vulkan):
  *    textureCompressionBC and samplerAnisotropy for textures, VK_KHR_ray_query for reflections,
  *    shaderFloat16 for upscaling. masu_device_query reports which ones a scene would use, before
@@ -389,7 +390,7 @@ typedef struct masu_pipelines {
 
 typedef struct masu_vulkan {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* required */
-    VkInstance instance;              /* required, created with API version >= 1.1 */
+    VkInstance instance; /* required, created with API version >= 1.1; 1.0 for a 1.0 device */
     VkPhysicalDevice physical_device; /* required */
     VkDevice device;                  /* required */
     uint32_t queue_family;            /* graphics and compute */
@@ -420,12 +421,13 @@ typedef enum masu_feature_bits {
     MASU_FEATURE_SHADER_FLOAT16 = 8 /* shaderFloat16 of VkPhysicalDeviceShaderFloat16Int8Features */
 } masu_feature_bits;
 
-#define MASU_MAX_EXTENSIONS 8u
+#define MASU_MAX_EXTENSIONS 11u
 typedef struct masu_device_info {
     uint32_t supported;       /* MASU_FEATURE_* that the device offers with their extensions */
     uint32_t used;            /* those of `supported` that masu_init would use if enabled */
     float max_anisotropy;     /* maxSamplerAnisotropy; 0 if samplerAnisotropy is not supported */
-    uint32_t extension_count; /* device extensions to enable for `used`, by static names: */
+    uint32_t extension_count; /* device extensions to enable for `used`, and those that Vulkan 1.0
+                                 needs, by static names: */
     const char *extensions[MASU_MAX_EXTENSIONS];
 } masu_device_info;
 

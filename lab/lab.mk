@@ -28,7 +28,7 @@ study isa-table ladders ladder-costs ladder-devices gallery:
 	+$(V)$(lab_make) $@
 
 .PHONY: mutants
-mutants: all $(UNIT_TESTS) $(GPU_TESTS) $(DRIVER_INFO) ## try the mutants of lab/mutants/drawn.tsv (hours): MUTANTS_DIR=/tmp/masu-mutants DRIVERS=system WANTED=60
+mutants: all $(UNIT_TESTS) $(GPU_TESTS) $(DRIVER_INFO) ## try the mutants of lab/mutants/drawn.tsv (an hour): MUTANTS_DIR=/tmp/masu-mutants DRIVERS=system WANTED=12
 	$(V)DRIVERS='$(DRIVERS)' lab/mutants/run.sh $(BUILD)/mutants.tsv
 
 .PHONY: light
@@ -36,7 +36,7 @@ light: tools $(foreach s,alley garden night room small_lamps,$(BUILD)/scenes/$(s
 	+$(V)$(lab_make) $@
 
 .PHONY: isa-drivers
-isa-drivers: ## build Intel's and Adreno's compilers for MASU_ISA_DRIVERS=build/isa-drivers (ten minutes)
+isa-drivers: ## build Intel's, Adreno's, the Raspberry Pi's and Mali's compilers for MASU_ISA_DRIVERS=build/isa-drivers (twenty minutes)
 	$(call install-packages,$(PACKAGES_isa))
 	$(V)lab/isa/drivers.sh build/isa-drivers
 

@@ -56,25 +56,35 @@ void masu_device_row_deny(const masu_device_row *row, VkPhysicalDeviceFeatures *
 
 /* ---- Replaced functions ---------------------------------------------------------------------- */
 
-static const masu_device_row *imposed;
+static const masu_device_row *_Atomic imposed_row; /* sessions in several threads set it */
 
-void masu_device_row_impose(const masu_device_row *row) { imposed = row; }
+void masu_device_row_impose(const masu_device_row *row) { imposed_row = row; }
 
 static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties *out) {
     vkGetPhysicalDeviceProperties(device, out);
+    const masu_device_row *imposed = imposed_row;
     if (imposed) masu_device_row_limit(imposed, out);
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
                                                VkPhysicalDeviceFeatures2 *out) {
     vkGetPhysicalDeviceFeatures2(device, out);
+    const masu_device_row *imposed = imposed_row;
     if (imposed) masu_device_row_deny(imposed, &out->features);
+}
+
+/* The same of a Vulkan 1.0 device. */
+static VKAPI_ATTR void VKAPI_CALL get_core_features(VkPhysicalDevice device,
+                                                    VkPhysicalDeviceFeatures *out) {
+    vkGetPhysicalDeviceFeatures(device, out);
+    if (imposed) masu_device_row_deny(imposed, out);
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *n,
                                                VkQueueFamilyProperties *out) {
     vkGetPhysicalDeviceQueueFamilyProperties(device, n, out);
+    const masu_device_row *imposed = imposed_row;
     for (uint32_t i = 0; imposed && !imposed->timestamps && out && i < *n; i++)
         out[i].timestampValidBits = 0;
 }
@@ -83,6 +93,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL masu_device_row_proc_addr(VkInstance in
                                                                    const char *name) {
     if (!strcmp(name, "vkGetPhysicalDeviceProperties")) return (PFN_vkVoidFunction)get_properties;
     if (!strcmp(name, "vkGetPhysicalDeviceFeatures2")) return (PFN_vkVoidFunction)get_features;
+    if (!strcmp(name, "vkGetPhysicalDeviceFeatures")) return (PFN_vkVoidFunction)get_core_features;
     if (!strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties"))
         return (PFN_vkVoidFunction)get_families;
     return vkGetInstanceProcAddr(instance, name);

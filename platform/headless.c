@@ -106,7 +106,8 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
         .pUserData = host};
     VkApplicationInfo app = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                              .pApplicationName = "masu",
-                             .apiVersion = VK_API_VERSION_1_1};
+                             .apiVersion =
+                                 host->desc.vulkan_1_0 ? VK_API_VERSION_1_0 : VK_API_VERSION_1_1};
     VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                  .pNext = host->validating ? &features : NULL,
                                  .pApplicationInfo = &app,
@@ -199,10 +200,11 @@ static bool choose_device(masu_headless *host, char *error, size_t size) {
         if (used < size)
             used += (size_t)snprintf(error + used, size - used, " %u '%s'", i, p.deviceName);
         if (by_index ? i != wanted_index : wanted && !contains(p.deviceName, wanted)) continue;
-        if (p.apiVersion < VK_API_VERSION_1_1 || !find_family(devices[i], &host->family)) continue;
+        if (!find_family(devices[i], &host->family)) continue;
         if (!can_present(host, devices[i])) continue;
         host->physical = devices[i];
         host->properties = p;
+        if (host->desc.vulkan_1_0) host->properties.apiVersion = VK_API_VERSION_1_0;
         return true;
     }
     if (!n && used < size) snprintf(error + used, size - used, " none");
@@ -220,14 +222,17 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
     masu_device_info can;
     masu_detail detail;
     masu_desc ask = {MASU_DESC,
-                     .vulkan = {.get_instance_proc_addr = vkGetInstanceProcAddr,
+                     .vulkan = {.get_instance_proc_addr = host->desc.get_instance_proc_addr,
                                 .instance = host->instance,
                                 .physical_device = host->physical,
                                 .queue_family = host->family},
                      .ray_query = host->desc.ray_query ? MASU_AUTO : MASU_OFF};
     if (masu_device_query(&ask, &can, &detail))
         return snprintf(error, size, "%s", detail.text), false;
-    if (host->desc.deny) can = (masu_device_info){0}, offered = (VkPhysicalDeviceFeatures){0};
+    if (host->desc.deny) {
+        can.used = 0, can.max_anisotropy = 0.0f, offered = (VkPhysicalDeviceFeatures){0};
+        if (host->properties.apiVersion >= VK_API_VERSION_1_1) can.extension_count = 0;
+    }
     host->compressed = (can.used & MASU_FEATURE_TEXTURE_COMPRESSION_BC) != 0;
     host->ray_query = (can.used & MASU_FEATURE_RAY_QUERY) != 0;
     host->float16 = (can.used & MASU_FEATURE_SHADER_FLOAT16) != 0;
@@ -288,7 +293,8 @@ static void describe_driver(masu_headless *host) {
                                      .pNext = &driver};
     if (host->properties.apiVersion < VK_API_VERSION_1_2)
         p.pNext = NULL; /* the struct is core from 1.2 on */
-    vkGetPhysicalDeviceProperties2(host->physical, &p);
+    else
+        vkGetPhysicalDeviceProperties2(host->physical, &p);
     snprintf(host->driver, sizeof host->driver, "%s, %s, %s, Vulkan %u.%u.%u",
              host->properties.deviceName, p.pNext ? driver.driverName : "unnamed driver",
              p.pNext ? driver.driverInfo : "unknown version",

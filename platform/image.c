@@ -1,6 +1,7 @@
 /* image.c: see image.h. Order: files, then PNG, then PFM. exr.c: OpenEXR.
+ * image_write.c: writers of PNG and JPEG.
  *
- * stb decodes and encodes PNG. It trusts chunk lengths too much for untrusted files and ignores
+ * stb decodes PNG. It trusts chunk lengths too much for untrusted files and ignores
  * checksums. So the chunks are validated here first; the decoder only receives files that are
  * complete and whose header is within the limits. */
 #ifndef _XOPEN_SOURCE
@@ -37,7 +38,6 @@ static void *bounded_realloc(void *block, size_t bytes) {
 #else
 #define STBIDEF extern
 #endif
-#define STBIWDEF STBIDEF
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
@@ -49,10 +49,6 @@ static void *bounded_realloc(void *block, size_t bytes) {
 #define STBI_REALLOC(block, bytes) bounded_realloc(block, bytes)
 #define STBI_FREE(block) free(block)
 #include <stb/stb_image.h>
-
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb/stb_image_write.h>
 
 _Static_assert(MASU_IMAGE_SIDE_MAX == STBI_MAX_DIMENSIONS, "one limit, stated twice");
 
@@ -395,27 +391,6 @@ bool masu_image_load_png(const char *path, struct masu_image *image, char *error
         return false;
     }
     bool good = masu_image_decode_png(path, bytes, count, image, error, error_size);
-    free(bytes);
-    return good;
-}
-
-bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,
-                         size_t row_bytes, char *error, size_t error_size) {
-    if (!size_is_allowed(path, width, height, error, error_size)) {
-        return false;
-    }
-    size_t row = row_bytes ? row_bytes : (size_t)width * 4;
-    if (row < (size_t)width * 4 || row > 0x7FFFFFFFu) {
-        return fail(error, error_size, "%s: rows of %zu bytes do not hold %u pixels", path, row,
-                    width);
-    }
-    int count = 0;
-    unsigned char *bytes =
-        stbi_write_png_to_mem(rgba, (int)row, (int)width, (int)height, 4, &count);
-    if (!bytes) {
-        return fail(error, error_size, "%s: out of memory for the PNG file", path);
-    }
-    bool good = masu_file_write(path, bytes, (size_t)count, error, error_size);
     free(bytes);
     return good;
 }

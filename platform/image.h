@@ -1,4 +1,4 @@
-/* image.h: reads and writes images: 8-bit RGBA as PNG, floats as PFM and OpenEXR.
+/* image.h: reads and writes images: 8-bit RGBA as PNG, floats as PFM and OpenEXR. Writes JPEG.
  *
  * Host side only; the library itself does no I/O. Every function returns true on success. On
  * failure it returns false, leaves its output empty, and writes one line, without a newline, with
@@ -52,6 +52,11 @@ uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t 
 /* rgba: height rows of width * 4 bytes, row_bytes apart (0 = tightly packed). */
 bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,
                          size_t row_bytes, char *error, size_t error_size);
+
+/* JPEG in memory, without alpha; quality 1 to 100. Returns the bytes that it needs, of which the
+ * first `most` are in `bytes`. 0: the size or the quality is not allowed. */
+size_t masu_image_encode_jpeg(const uint8_t *rgba, uint32_t width, uint32_t height, int quality,
+                              uint8_t *bytes, size_t most);
 
 /* PFM: 1 channel ("Pf") or 3 ("PF"), 32-bit floats of either byte order, with bits unchanged
  * (including NaN; the magnitude of the scale is not applied). Writes little-endian. */

@@ -1,5 +1,4 @@
-/* image_parts.h: functions shared by the readers of single formats; only image.c and exr.c include
- * it. */
+/* image_parts.h: functions shared by image.c, image_write.c and exr.c, which alone include it. */
 #ifndef MASU_PLATFORM_IMAGE_PARTS_H
 #define MASU_PLATFORM_IMAGE_PARTS_H
 

@@ -2,3 +2,6 @@
 # Not installed.
 
 $(BUILD)/lib/libmasu-platform.a: $(call objects,$(wildcard platform/*.c))
+
+# stb's JPEG writer shifts bits out of signed integers.
+$(BUILD)/obj/platform/image_write.o: FOLDER_FLAGS += -fno-sanitize=shift

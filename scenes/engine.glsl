@@ -67,13 +67,14 @@ float column(vec3 p, vec2 at, float apothem, float top)
 
 float stones(vec3 p)
 {
-    const vec4 columns[] = vec4[](vec4(0.0, 0.0, 0.52, 0.56), vec4(-0.93, 0.50, 0.48, 0.30),
-                                  vec4(0.86, -0.30, 0.46, 0.62), vec4(0.06, 0.98, 0.40, 0.16));
     float d = 1e30;
     for (int i = 0; i < 6; i++) {
         if (masu_term(STONE + i)) {
             vec3 middle = i == 4 ? vec3(-2.9, -0.15, -1.1) : vec3(-3.5, -0.12, -0.7);
-            float e = i < 4 ? column(p, columns[i & 3].xy, columns[i & 3].z, columns[i & 3].w)
+            /* Not an array: some GPUs would put it into the memory of each invocation. */
+            vec4 c = i == 0 ? vec4(0.0, 0.0, 0.52, 0.56) : i == 1 ? vec4(-0.93, 0.50, 0.48, 0.30)
+                   : i == 2 ? vec4(0.86, -0.30, 0.46, 0.62) : vec4(0.06, 0.98, 0.40, 0.16);
+            float e = i < 4 ? column(p, c.xy, c.z, c.w)
                             : length(p - middle) - (i == 4 ? 0.62 : 0.40);
             float k = i < 4 ? 0.05 : 0.25;
             masu_term_joined(STONE + i, masu_terms_from(STONE, i), d, e, k);
@@ -244,17 +245,18 @@ void pillar_surface(vec3 p, inout masu_surface s)
     s.roughness = 0.9;
     float mist = smoothstep(16.0, 100.0, length(p.xz));
     vec2 cell = round(p.xz / pillar_spacing);
-    if (abs(p.y - 2.27) < 0.24 && lantern_is_lit(cell)) {
+    bool lit = abs(p.y - 2.27) < 0.24 && lantern_is_lit(cell);
+    if (lit) {
         vec3 flame = mix(vec3(3.2, 1.25, 0.28), vec3(1.5, 0.36, 0.06), 2.0 * abs(p.y - 2.25));
         float flicker = 0.9 + 0.1 * sin(9.0 * masu_time() + 2.4 * cell.x + 5.1 * cell.y);
         s.emissive = mix(flame * flicker, horizon, mist);
     } else if (mist > 0.0) {
         s.emissive = mix(rough_light(s.albedo, masu_normal), horizon, mist);
-    } else {
-        return;
     }
-    s.albedo = vec3(0.0); /* and as rough as can be: it is not lit */
-    s.roughness = 1.0;
+    if (lit || mist > 0.0) { /* and as rough as can be: it is not lit */
+        s.albedo = vec3(0.0);
+        s.roughness = 1.0;
+    }
 }
 
 void masu_sdf_surface(vec3 p, inout masu_surface s)

@@ -37,6 +37,7 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "push/ao.h"
 #include "shared/ao.h"
 #include "shared/types.h"
@@ -99,18 +100,14 @@ float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice
         float far = dot(to, along);
         float distance = length(to);
         float weight = 1.0 - distance / push.radius;
-        if (!(z < ao_farthest) || !(high > 0.0) || !(weight > 0.0)) {
-            continue;
-        }
         /* Clamped to the view direction: no visible point is in front of the surface. */
         float c = max(far / max(length(vec2(far, high)), masu_tiny), -slice.y);
-        if (!(c < highest_c)) {
-            continue;
+        if (z < ao_farthest && high > 0.0 && weight > 0.0 && c < highest_c) {
+            float f = free_above(c, sqrt(max(1.0 - c * c, 0.0)), fast_acos(c), slice);
+            hidden += weight * (highest_f - f);
+            highest_c = c;
+            highest_f = f;
         }
-        float f = free_above(c, sqrt(max(1.0 - c * c, 0.0)), fast_acos(c), slice);
-        hidden += weight * (highest_f - f);
-        highest_c = c;
-        highest_f = f;
     }
     return 0.25 * hidden * length_n;
 }
@@ -142,13 +139,15 @@ float seen_from(surface_point p, ao_lens lens, uvec2 texel)
         screen *= masu_rsqrt(dot(screen, screen));
         vec2 in_slice = vec2(dot(p.normal, e), dot(p.normal, way));
         float length_n = length(in_slice);
-        if (!(length_n > 1e-4)) {
-            continue; /* the slice is parallel to the surface: its cosine weight is 0 */
+        if (length_n > 1e-4) { /* else the slice is parallel to the surface: its cosine weight is 0 */
+            in_slice /= length_n;
+            [[dont_unroll]] for (int side = 0; side < 2; side++) {
+                hidden += hidden_by(p, lens, way, screen, in_slice, length_n, reach, phase);
+                way = -way;
+                screen = -screen;
+                in_slice.y = -in_slice.y;
+            }
         }
-        in_slice /= length_n;
-        hidden += hidden_by(p, lens, way, screen, in_slice, length_n, reach, phase);
-        in_slice.y = -in_slice.y;
-        hidden += hidden_by(p, lens, -way, -screen, in_slice, length_n, reach, phase);
     }
     return 1.0 - hidden / float(push.slices);
 }

@@ -171,6 +171,9 @@ void main()
 #endif
             if (!masu_is_unlit(m.surface)) {
                 vec3 n = m.normal;
+                /* Before the lights: it needs the most registers. */
+                vec4 live = masu_probe_light(from, n);
+                sum += reflectance(m.surface, -dot(n, direction)) * (live.rgb * live.w + (unlit ? masu_ambient(n) * (1.0 - live.w) : vec3(0.0)));
                 vec3 far = abs(from + probe_grid.origin.xyz);
                 lifted += n * (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
                 uint seed = (ray.probe * MASU_BOUNCE_SETS + ray.set) * MASU_BOUNCE_RAYS_MAX + ray.number;
@@ -188,8 +191,6 @@ void main()
                 }
 #endif
                 added = reflectance(m.surface, dot(n, c.l)) * c.color * (c.total / c.weight);
-                vec4 live = masu_probe_light(from, n);
-                sum += reflectance(m.surface, -dot(n, direction)) * (live.rgb * live.w + (unlit ? masu_ambient(n) * (1.0 - live.w) : vec3(0.0)));
             }
         } else if (unlit) {
             sum = masu_sky(direction);

@@ -73,9 +73,6 @@ void main()
         float limit = min(frame.sdf_max.w, masu_sdf_flat(world_at(r.direction, 0.0), r.direction, t, part));
         uint evals = 0u;
         uvec2 pixels = uvec2(pc.render_width, pc.render_height);
-#if MASU_WRITES_BLOCKS
-        span_locate(pixels);
-#endif
         masu_listed_box(box_low, box_high);
         bool empty = !masu_use_tile(masu_tile_of(at * uint(MASU_CONE_BLOCK), pixels), pixels);
         bool done = empty;
@@ -106,7 +103,7 @@ void main()
             evals++;
 #if MASU_WRITES_BLOCKS
             if (done) {
-                uint place = span_place(at) + uint(1 + span * MASU_SDF_BLOCK_WORDS);
+                uint place = span_place(at, pixels) + uint(1 + span * MASU_SDF_BLOCK_WORDS);
                 for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
                     masu_tiles_out[place + uint(w)] = masu_kept[w];
                 }
@@ -124,7 +121,7 @@ void main()
 #if MASU_WRITES_BLOCKS
         /* Few rays continue past the end of the centre ray: they use the tile's list, as all rays
          * do with push.all_terms. */
-        uint place = span_place(at);
+        uint place = span_place(at, pixels);
         masu_tiles_out[place] = floatBitsToUint(t);
         for (int i = 0; i < MASU_BLOCK_SPANS; i++) {
             for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {

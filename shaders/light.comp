@@ -13,6 +13,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
+#ifdef MASU_LOCAL_SHADOWS
+#define MASU_SHELVED masu_few_registers
+#endif
 #include "push/light.h"
 #include "shared/counters.h"
 #include "shared/lights.h"
@@ -67,12 +70,23 @@ vec2 arriving(uvec2 at)
 #endif
 }
 
+#ifdef MASU_LOCAL_SHADOWS
+const bool emission_late = true; /* loaded after the ambient light, which leaves no registers for it */
+#else
+const bool emission_late = false;
+#endif
+
+vec3 load_emission(ivec2 at, uint normal)
+{
+    return masu_has_emission(normal) ? imageLoad(hdr_image, at).rgb : vec3(0.0); /* elsewhere hdr is undefined */
+}
+
 /* The surface that the G-buffer stores at a pixel. */
 masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 {
     masu_surface s = masu_unpack_look(albedo, normal);
-    if (!masu_emission_packed && masu_has_emission(normal)) { /* elsewhere hdr is undefined */
-        s.emissive = imageLoad(hdr_image, at).rgb;
+    if (!masu_emission_packed && !emission_late) {
+        s.emissive = load_emission(at, normal);
     }
 #ifdef MASU_SURFACE
     if ((masu_unpack_flags(normal) & MASU_SURFACE_MORE) != 0u) {
@@ -80,6 +94,11 @@ masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
     }
 #endif
     return s;
+}
+
+vec3 emission(ivec2 at, masu_surface s, uint normal)
+{
+    return !masu_emission_packed && emission_late ? load_emission(at, normal) : s.emissive;
 }
 
 #ifdef MASU_LOCAL_SHADOWS
@@ -120,12 +139,20 @@ void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 re
     uvec2 tile = gl_WorkGroupID.xy / uint(MASU_TILE / MASU_GROUP);
     masu_asked asked = masu_lights_asked(tile, size, push.light_tiles != 0u);
     masu_light_sum sum = masu_light_sum(color);
+#ifdef MASU_SHELVED
+    masu_shelved_bsdf shelf = masu_shelve(b);
+#endif
     uint reached = 0u;
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {
             break;
         }
-        reached += masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
+#ifdef MASU_SHELVED
+        bool reaches = masu_add_local_light(sum, s, b, shelf, masu_light_asked(asked, i), rel, n, traced);
+#else
+        bool reaches = masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced);
+#endif
+        reached += reaches ? 1u : 0u;
     }
     color = sum.light;
     masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);
@@ -142,17 +169,16 @@ void main()
         vec3 direction = masu_normalize(ray, frame.forward.xyz);
         float depth = texelFetch(depth_image, ivec2(at), 0).r;
         vec3 color;
-        float air = 0.0;
-        bool open = !(depth > 0.0);
-        if (open) {
-            color = masu_sun_disc(direction);
-            air = foggy ? masu_air_depth_sky(direction) : 0.0;
+        if (!(depth > 0.0)) {
+            float air = foggy ? masu_air_depth_sky(direction) : 0.0;
+            color = masu_seen_along(masu_sun_disc(direction), true, frame.background, direction, foggy, air);
         } else {
             vec4 albedo = texelFetch(albedo_image, ivec2(at), 0);
             uint normal = texelFetch(normal_image, ivec2(at), 0).r;
             masu_surface s = surface_at(ivec2(at), albedo, normal);
-            color = s.emissive;
-            if (!masu_is_unlit_texel(normal)) {
+            if (masu_is_unlit_texel(normal)) {
+                color = emission(ivec2(at), s, normal);
+            } else {
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
                 vec2 kept = vec2(1.0);
                 if (reflections) {
@@ -161,16 +187,13 @@ void main()
                 vec3 n = masu_unpack_normal(normal);
 #ifdef MASU_LIGHTS
                 masu_around around = masu_ambient_first(s, rel, masu_base_normal(s, n));
+#else
+                masu_around around = masu_ambient_at(rel, masu_base_normal(s, n));
 #endif
                 masu_mirrored sky = masu_mirrored_sky(s, n, -direction, kept);
-#ifdef MASU_LIGHTS
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, around, arriving(at), sky);
-#else
-                masu_bsdf b = masu_bsdf_make(s, n, -direction);
-                masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
-#endif
-                color += lit.diffuse + lit.specular;
+                color = lit.diffuse + lit.specular + emission(ivec2(at), s, normal);
 #ifdef MASU_LIGHTS
 #ifdef MASU_LOCAL_SHADOWS
                 if (reliefs) {
@@ -181,12 +204,13 @@ void main()
                 add_lights(color, s, b, at, ray * masu_light_depth(depth), n, traced);
 #endif
             }
+            float air = 0.0;
             if (foggy) {
                 float far = frame.forward.w * masu_rcp(depth) * length(ray);
                 air = masu_air_depth(direction, far);
             }
+            color = masu_seen_along(color, false, frame.background, direction, foggy, air);
         }
-        color = masu_seen_along(color, open, frame.background, direction, foggy, air);
         MASU_STORE_HALF(hdr_image, at, vec4(color, 1.0));
     }
     masu_count_end();

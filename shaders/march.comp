@@ -48,11 +48,8 @@ shared float ray_limit[RAYS];
 shared float ray_flat[RAYS];
 shared uint taken; /* rays that invocations have fetched */
 
-/* corner: the tile's first pixel; ndc_corner: its NDC; ndc_step: NDC between two pixels. Rejected:
- * the direction of the first pixel plus increments per column and row. At the horizon of a plane
- * 1e5 units long the depth error was 2.3e-6 instead of 1e-6. */
-uvec2 size, corner;
-vec2 ndc_corner, ndc_step;
+uint tile;
+uvec2 size;
 
 /* Position of pixel i in the tile: one 8x8 block after the other. */
 uvec2 place_of(uint i)
@@ -60,31 +57,34 @@ uvec2 place_of(uint i)
     return masu_block_at(i & uint(INVOCATIONS - 1)) + (uvec2(i >> 6 & 1u, i >> 7) << 3u);
 }
 
-ray ray_of(uvec2 place, out float z_scale)
+/* Column and row of a tile by float division. Exact: there are at most 2^20 tiles, 1024 in a row,
+ * and the rounding error is smaller than the added half tile. */
+uvec2 tile_at(uint columns)
 {
-    vec2 ndc = ndc_corner + ndc_step * vec2(place);
+    uint row = uint((float(tile) + 0.5) / float(columns));
+    return uvec2(tile - row * columns, row);
+}
+
+/* First pixel of the tile. Recomputed where a ray begins, like everything that depends on it: kept,
+ * it would take registers from the march, and only AMD's compilers have scalar ones for it. */
+uvec2 corner_of()
+{
+    uvec2 at = tile_at(masu_tile_grid(size).x);
+    return at * uint(MASU_TILE);
+}
+
+/* Rejected: the direction of the first pixel plus increments per column and row. At the horizon of
+ * a plane 1e5 units long the depth error was 2.3e-6 instead of 1e-6. */
+ray ray_of(uvec2 corner, uvec2 place, out float z_scale)
+{
+    vec2 ndc_step = 2.0 / vec2(size);
+    vec2 ndc = masu_ndc(vec2(corner) + 0.5, vec2(size)) + ndc_step * vec2(place);
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
     /* Rejected: one inversesqrt for both. At the horizon of a plain, half of the depths had an
      * error of 1.11e-7 instead of 0.84e-7. */
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
     return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);
-}
-
-/* Column and row of a tile by float division. Exact: there are at most 2^20 tiles, 1024 in a row,
- * and the rounding error is smaller than the added half tile. */
-uvec2 tile_at(uint tile, uint columns)
-{
-    uint row = uint((float(tile) + 0.5) / float(columns));
-    return uvec2(tile - row * columns, row);
-}
-
-void look_from(uvec2 tile)
-{
-    size = uvec2(pc.output_width, pc.output_height);
-    corner = tile * uint(MASU_TILE);
-    ndc_corner = masu_ndc(vec2(corner) + 0.5, vec2(size));
-    ndc_step = 2.0 / vec2(size);
 }
 
 /* Bounds of the listed parts relative to the camera. The SDF's bounds are not stored as well: on
@@ -112,7 +112,7 @@ vec2 within(vec3 low, vec3 high, vec3 inverse)
 float cone_end(uvec2 at)
 {
 #if MASU_SDF_BLOCK_WORDS > 0
-    return uintBitsToFloat(masu_tiles[span_word(at)]);
+    return uintBitsToFloat(masu_tiles[span_word(at, size)]);
 #else
     return texelFetch(cone_image, ivec2(at >> 2u), 0).r;
 #endif
@@ -121,11 +121,11 @@ float cone_end(uvec2 at)
 /* Start and end distance of a pixel's ray, and the distance of the half-space that ends it, or -1.
  * The same as pixel_ray and clip_to_box, from values that the four pixels share. Zero components of
  * the direction are replaced by 1e-12. */
-vec3 prepare(uvec2 place)
+vec3 prepare(uvec2 corner, uvec2 place)
 {
     uvec2 at = corner + place;
     float z_scale;
-    ray r = ray_of(place, z_scale);
+    ray r = ray_of(corner, place, z_scale);
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
     vec2 bounds = within(frame.sdf_low.xyz, frame.sdf_high.xyz, inverse);
     float nearest = frame.forward.w * z_scale;
@@ -146,9 +146,9 @@ vec3 prepare(uvec2 place)
     return vec3(first_t, last_t, end <= farthest && end < 1e30 ? end : -1.0);
 }
 
-void begin_spans(uvec2 place, float t)
+void begin_spans(uvec2 at, float t)
 {
-    span_begin(min(corner + place, size - 1u), size, t);
+    span_begin(min(at, size - 1u), size, t);
 }
 
 /* Evaluates the SDF at t with the terms of the span that contains t. Rejected: each ray selects its
@@ -160,27 +160,28 @@ float field_here(ray r, float t)
     return field_at(r, t);
 }
 
-/* The next ray from i on that has an interval to march; RAYS or more if there is none, or if too
- * few steps remain to march it to its end. */
+/* The next ray after i that has an interval to march, at step 0 the invocation's first; RAYS or more
+ * if there is none, or if too few steps remain to march it to its end. */
 uint take(uint i, int step)
 {
     MASU_LOOP for (int k = 0; k < RAYS; k++) {
+        bool first = step == 0 && k == 0;
+        i = first ? gl_LocalInvocationIndex : !share_rays ? i + uint(INVOCATIONS) : atomicAdd(taken, 1u);
         if (i >= uint(RAYS) || ray_limit[i] > 0.0) {
             break;
         }
-        i = !share_rays ? i + uint(INVOCATIONS) : atomicAdd(taken, 1u);
     }
-    return step < 3 * MASU_MARCH_STEPS_MAX || !share_rays ? i : uint(RAYS);
+    return step <= 3 * MASU_MARCH_STEPS_MAX || !share_rays ? i : uint(RAYS);
 }
 
 march_state begin(uint i, out ray r)
 {
     float z_scale;
-    uvec2 place = place_of(i);
-    r = ray_of(place, z_scale);
+    uvec2 corner = corner_of(), place = place_of(i);
+    r = ray_of(corner, place, z_scale);
     r.start = -ray_start[i];
     r.limit = ray_limit[i];
-    begin_spans(place, r.start);
+    begin_spans(corner + place, r.start);
     return march_begin(r);
 }
 
@@ -192,48 +193,44 @@ march_state begin(uint i, out ray r)
  * the barrier: 1.1 to 1.4 times the time of the march. */
 uint march_all()
 {
-    uint evals = 0u;
-    uint i = take(gl_LocalInvocationIndex, 0);
-    if (i >= uint(RAYS)) {
-        return 0u;
-    }
-    ray r;
-    march_state m = begin(i, r);
-    MASU_LOOP for (int step = 0; step < 4 * MASU_MARCH_STEPS_MAX; step++) {
-        march_step(m, r, field_here(r, m.t));
+    uint i = 0u;
+    ray r = ray(vec3(0.0), 0.0, 0.0, 0.0);
+    march_state m = march_begin(r); /* done */
+    int step = 0;
+    MASU_LOOP for (; step < 4 * MASU_MARCH_STEPS_MAX; step++) {
         if (m.done) {
-            evals += m.steps;
-            ray_start[i] = m.t;
-            i = take(!share_rays ? i + uint(INVOCATIONS) : atomicAdd(taken, 1u), step);
+            i = take(i, step);
             if (i >= uint(RAYS)) {
                 break;
             }
             m = begin(i, r);
         }
+        march_step(m, r, field_here(r, m.t));
+        if (m.done) {
+            ray_start[i] = m.t;
+        }
     }
-    return evals;
+    return uint(step);
 }
 
 void main()
 {
     masu_count_begin();
-    uint tile = masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];
-    uint columns = masu_tile_grid(uvec2(pc.output_width, pc.output_height)).x;
-    look_from(tile_at(tile, columns));
-    bool listed = masu_use_tile(tile, size);
+    tile = masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];
+    size = uvec2(pc.output_width, pc.output_height);
     look_at_boxes();
     if (gl_LocalInvocationIndex == 0u) {
         taken = uint(INVOCATIONS);
     }
-    span_prepare(size);
-    uvec2 own = place_of(gl_LocalInvocationIndex);
     /* Pixels outside the image march nothing. */
     MASU_LOOP for (int k = 0; k < 4; k++) {
         uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
-        uvec2 place = own + uvec2((k & 1) << 3, k >> 1 << 3);
+        uvec2 corner = corner_of(), place = place_of(i);
         vec3 piece = vec3(-1.0);
+        /* In the loop: the bits of the list would take registers until the end. */
+        bool listed = masu_use_tile(tile, size);
         if (all(lessThan(corner + place, size))) {
-            piece = prepare(place);
+            piece = prepare(corner, place);
         }
         /* A ray without an interval is already finished, as a miss. */
         bool any = listed && piece.x < piece.y;
@@ -250,19 +247,19 @@ void main()
     }
     MASU_LOOP for (int k = 0; k < 4; k++) {
         uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
-        uvec2 place = own + uvec2((k & 1) << 3, k >> 1 << 3);
+        uvec2 corner = corner_of(), place = place_of(i);
         uvec2 at = corner + place;
         float t = ray_start[i];
         bool known = !(t >= 0.0);
         t = known ? ray_flat[i] : t; /* -1 outside the image */
         if (t >= 0.0) {
             float z_scale;
-            ray r = ray_of(place, z_scale);
+            ray r = ray_of(corner, place, z_scale);
             uint part = uint(MASU_SDF_LISTED_COUNT); /* half-spaces are the last */
             if (known && MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT + 1) {
                 masu_sdf_flat(eye_hi + eye_lo, r.direction, t, part);
             } else if (!known) {
-                begin_spans(place, t);
+                begin_spans(at, t);
             }
             MASU_STORE_SAFE(depth_image, at, vec4(write_hit(at, r, t, known, part, z_scale)));
         }

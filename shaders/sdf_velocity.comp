@@ -131,7 +131,6 @@ bool any_moves()
 vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
 {
     if (push.listed == 2u) {
-        span_prepare(size);
         span_begin(at, size, t);
         if (!any_moves()) {
             return vec3(0.0);

@@ -99,11 +99,11 @@ field = $(word $(2),$(subst :, ,$(1)))
 $(foreach b,$(PERMUTATIONS),$(eval $(call \
     shader_rule,$(call field,$(b),1),shaders/$(call field,$(b),2),$(call field,$(b),3))))
 
-# whole_vectors: see tools/spirv/whole_vectors.h.
+# whole_vectors: see tools/spirv/whole_vectors.h. Only ray queries need Vulkan 1.1.
 $(MADE)/gen/%.opt.spv: $(MADE)/gen/%.spv $(MADE)/tools/whole_vectors
 	$(V)spirv-opt --target-env=vulkan1.1 -O --strip-debug $< -o $@
 	$(V)$(MADE)/tools/whole_vectors $@ $@
-	$(V)spirv-val $(SPIRV_TARGET) $@
+	$(V)spirv-val --target-env $(if $(findstring query,$*),vulkan1.1,vulkan1.0) $@
 
 # Compiled beside the objects of the programs, which wait for what is generated.
 WHOLE_VECTORS := $(wildcard tools/spirv/*.[ch])

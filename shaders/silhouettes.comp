@@ -82,8 +82,8 @@ uint own_tile;
 #define STEPS 128
 
 shared uint listed_count, differ_count;
-/* Pixels that may have an edge: bits 0 to 5 the index in the group, from bit 6 the first
- * position. */
+/* Pixels that may have an edge: bits 0 to 5 the index in the group, 6 and 7 the first position, 8
+ * whether there are edges on two opposite sides. */
 shared uint listed[INVOCATIONS];
 shared uint differ[INVOCATIONS];          /* indices into `listed` where the first ray differs */
 shared vec3 light[RAYS * INVOCATIONS];    /* colour of each pixel's rays */
@@ -263,7 +263,7 @@ met meet(ivec2 at, ray r, bool any_listed)
     r.limit = any_listed ? min(r.limit * (1.0 + newton_reach * r.pixel), farthest) : r.start;
 #if MASU_SDF_BLOCK_WORDS > 0
     if (push.listed == 2u) {
-        r.start = max(r.start, uintBitsToFloat(masu_tiles[span_word(uvec2(at))]));
+        r.start = max(r.start, uintBitsToFloat(masu_tiles[span_word(uvec2(at), size)]));
         span_begin(uvec2(at), size, r.start);
     }
 #endif
@@ -316,17 +316,16 @@ void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun
 {
     around = vec3(0.0);
     sun = vec3(0.0);
-    if (masu_is_unlit_texel(normal)) {
-        return;
+    if (!masu_is_unlit_texel(normal)) {
+        vec3 n = masu_unpack_normal(normal);
+        masu_mirrored sky = masu_mirrored_sky(s, n, v, vec2(1.0));
+        masu_bsdf b = masu_bsdf_make(s, n, v);
+        masu_lit lit = masu_shade_around(s, b, masu_ambient_at(vec3(0.0), b.n), 1.0, sky);
+        around = lit.diffuse + lit.specular;
+        lit = masu_lit(vec3(0.0), vec3(0.0), vec3(0.0));
+        masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb);
+        sun = lit.diffuse + lit.specular;
     }
-    vec3 n = masu_unpack_normal(normal);
-    masu_mirrored sky = masu_mirrored_sky(s, n, v, vec2(1.0));
-    masu_bsdf b = masu_bsdf_make(s, n, v);
-    masu_lit lit = masu_shade_around(s, b, vec3(0.0), 1.0, sky);
-    around += lit.diffuse + lit.specular;
-    lit = masu_lit(vec3(0.0), vec3(0.0), vec3(0.0));
-    masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb);
-    sun = lit.diffuse + lit.specular;
 }
 
 /* Colour of a hit at t in the light of pixel `like`; with full sun if no pixel has the same kind
@@ -344,33 +343,37 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
         hdr = max(hdr - air * (1.0 - left_there), 0.0) / max(left_there, 1e-3);
         left = masu_fog_left(masu_air_depth(direction, t));
     }
-    masu_surface met_surface = masu_unpack_met(unpackUnorm4x8(met_albedo), met_normal);
     if (found && masu_has_emission(texelFetch(normal_image, like, 0).r)) {
-        hdr = max(hdr - met_surface.emissive, 0.0);
+        hdr = max(hdr - masu_unpack_met(unpackUnorm4x8(met_albedo), met_normal).emissive, 0.0);
     }
-    vec3 around, sun, there = vec3(0.0);
+    vec3 here = vec3(0.0), there = vec3(0.0);
     float seen = 1.0;
     MASU_LOOP for (int k = 0; k < 2; k++) {
         bool first = k == 0 && found;
-        masu_surface s = met_surface;
-        uint normal = met_normal;
+        /* Read and unpacked in the loop: both surfaces would take 16 registers. */
+        ivec2 from = first ? like : ivec2(0);
+        uint normal = texelFetch(normal_image, from, 0).r;
+        vec4 albedo = texelFetch(albedo_image, from, 0);
+        normal = first ? normal : met_normal;
+        albedo = first ? albedo : unpackUnorm4x8(met_albedo);
+        masu_surface s = masu_unpack_met(albedo, normal);
         if (first) {
-            normal = texelFetch(normal_image, like, 0).r;
-            s = masu_unpack_look(texelFetch(albedo_image, like, 0), normal);
+            s = masu_unpack_look(albedo, normal);
         }
+        vec3 around, sun;
         light_up(s, normal, -direction, around, sun);
         if (first) {
             /* Sun visibility, from the pixel's light without and with sun. 1 if it faces away. */
             float more = masu_luminance(sun);
             float without = masu_luminance(around);
             seen = more > 0.05 * without ? clamp((masu_luminance(hdr) - without) / more, 0.0, 1.0) : 1.0;
-            there = around + seen * sun;
         }
+        here = around + seen * sun;
+        there = first ? here : there;
     }
-    vec3 here = around + seen * sun;
     /* Without any light to compare, as at night with lamps only, the ratio is 1. */
     here = found ? hdr * clamp((here + 1e-6) / (there + 1e-6), 0.125, 8.0) : here;
-    here += met_surface.emissive;
+    here += masu_unpack_met(unpackUnorm4x8(met_albedo), met_normal).emissive;
     return here * left + air * (1.0 - left);
 }
 
@@ -381,9 +384,10 @@ vec3 radiance_at(ivec2 at, vec2 place)
     float z_scale;
     ray r = place_ray(vec2(at) + 0.5 + place, size, raster, z_scale);
     /* Recomputed for each ray: values shared by rays would occupy too many registers in shading. */
+    span_begin_none();
+    masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
     own_tile = masu_tile_of(gl_WorkGroupID.xy * uint(MASU_GROUP), size);
     bool any_listed = push.listed == 0u || masu_use_tile(own_tile, size);
-    span_prepare(size);
     met m = meet(at, r, any_listed);
     bool sdf = m.t >= 0.0;
     float off;
@@ -391,39 +395,51 @@ vec3 radiance_at(ivec2 at, vec2 place)
     if (!m.done) {
         like = at;
     }
+    vec3 color;
     if (!sdf || !m.done || off < 0.05) {
-        return texelFetch(hdr_image, like, 0).rgb;
+        color = texelFetch(hdr_image, like, 0).rgb;
+    } else {
+        if (push.listed == 2u && m.half_space < 0) {
+            span_begin(uvec2(at), size, m.t);
+        }
+        vec4 albedo;
+        uint normal;
+        vec3 n;
+        masu_surface s = surface_met(r, m.t, m.half_space >= 0, uint(max(m.half_space, 0)), n);
+        masu_pack_met(n, s, albedo, normal);
+        color = lit_like(like, off < 1e30, r.direction, m.t, packUnorm4x8(albedo), normal);
     }
-    if (push.listed == 2u && m.half_space < 0) {
-        span_begin(uvec2(at), size, m.t);
-    }
-    vec4 albedo;
-    uint normal;
-    vec3 n;
-    masu_surface s = surface_met(r, m.t, m.half_space >= 0, uint(max(m.half_space, 0)), n);
-    masu_pack_met(n, s, albedo, normal);
-    return lit_like(like, off < 1e30, r.direction, m.t, packUnorm4x8(albedo), normal);
+    return color;
 }
 
 /* ---- The workgroup --------------------------------------------------------------------------- */
 
+/* Pixel of an entry of the list. From shared memory each time, since it would take registers. */
+ivec2 pixel_of(uint entry)
+{
+    uint own = listed[entry] & uint(INVOCATIONS - 1);
+    return ivec2(gl_WorkGroupID.xy * uint(MASU_GROUP)) + ivec2(own & uint(MASU_GROUP - 1), own / uint(MASU_GROUP));
+}
+
 /* Marches ray `next` of 3 for an entry of the list. */
 void march_one(uint entry, uint next)
 {
-    uint own = listed[entry] & uint(INVOCATIONS - 1);
-    ivec2 at = ivec2(gl_WorkGroupID.xy * uint(MASU_GROUP)) + ivec2(own & uint(MASU_GROUP - 1), own / uint(MASU_GROUP));
-    vec2 place = place_of(((listed[entry] >> 6) + next) % uint(RAYS));
-    light[entry * uint(RAYS) + next] = shown(radiance_at(at, place));
+    vec2 place = place_of(((listed[entry] >> 6 & 3u) + next) % uint(RAYS));
+    light[entry * uint(RAYS) + next] = shown(radiance_at(pixel_of(entry), place));
 }
 
 #if MASU_GROUP != 8
 #error "numbers in a group have 6 bits"
 #endif
 
-/* The texel of the invocation's pixel; entry: its index in the list, INVOCATIONS if not listed. */
-uint march_edges(ivec2 at, uint entry, bool between)
+vec3 middle_of(uint entry)
 {
-    vec3 middle = vec3(0.0);
+    return shown(texelFetch(hdr_image, pixel_of(entry), 0).rgb);
+}
+
+/* The texel of the invocation's pixel; entry: its index in the list, INVOCATIONS if not listed. */
+uint march_edges(uint entry)
+{
     /* First one ray per entry, then two more for entries that differ. The loop avoids compiling a
      * ray more than once. */
     MASU_LOOP for (uint k = 0u; k < 3u; k++) {
@@ -434,8 +450,8 @@ uint march_edges(ivec2 at, uint entry, bool between)
         if (k == 0u) {
             barrier();
             if (entry < uint(INVOCATIONS)) {
-                middle = shown(texelFetch(hdr_image, at, 0).rgb);
-                if (between || masu_edge_differs(light[entry * uint(RAYS)], middle)) {
+                bool between = (listed[entry] >> 8) != 0u;
+                if (between || masu_edge_differs(light[entry * uint(RAYS)], middle_of(entry))) {
                     differ[atomicAdd(differ_count, 1u)] = entry;
                 } else {
                     entry = uint(INVOCATIONS);
@@ -449,6 +465,7 @@ uint march_edges(ivec2 at, uint entry, bool between)
         return 0u;
     }
     vec3 rays = light[entry * uint(RAYS)] + light[entry * uint(RAYS) + 1u] + light[entry * uint(RAYS) + 2u];
+    vec3 middle = middle_of(entry);
     vec3 mean = mix(rays * (1.0 / float(RAYS)), middle, middle_share);
     return masu_edge_differs(mean, middle) ? masu_pack_edge(mean) : 0u;
 }
@@ -465,15 +482,15 @@ void main()
     barrier();
     uint entry = uint(INVOCATIONS);
     vec2 side;
-    bool between = false;
+    bool between;
     if (is_inside(at) && has_edge(at, side, between)) {
         entry = atomicAdd(listed_count, 1u);
-        listed[entry] = gl_LocalInvocationIndex | place_towards(side) << 6;
+        listed[entry] = gl_LocalInvocationIndex | place_towards(side) << 6 | uint(between) << 8;
     }
     barrier();
     uint word = 0u;
     if (listed_count > 0u) {
-        word = march_edges(at, entry, between);
+        word = march_edges(entry);
     }
     if (is_inside(at)) {
         MASU_STORE_SAFE(silhouettes_image, at, uvec4(word));

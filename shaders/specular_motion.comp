@@ -7,6 +7,7 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "push/specular_motion.h"
 #include "shared/types.h"
 #include "shared/counters.glsl"
@@ -79,23 +80,28 @@ uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
     vec3 thing = before - 2.0 * g.normal * dot(before - shift, g.normal);
     float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, point);
     float cosine = clamp(-dot(along, g.normal), 0.1, 1.0);
-    float image = masu_image_far(far, curvature / cosine);
-    vec4 velocity = image_moved(point, along, image, mix(shift, thing, image / max(far, 1e-9)), eyes, size);
-    if (!(velocity.w > 0.0)) {
-        return masu_unmoved;
-    }
-    vec3 aside = g.normal + along * cosine;
-    vec2 lean = vec2(dot(aside, frame.right.xyz) / frame.right.w, -dot(aside, frame.up.xyz) / frame.up.w);
-    float steep = dot(lean, lean);
-    if (curvature > 0.0 && steep > 1e-6) {
-        image = masu_image_far(far, curvature * cosine);
-        vec4 across = image_moved(point, along, image, mix(shift, thing, image / max(far, 1e-9)), eyes, size);
-        if (!(across.w > 0.0)) {
+    vec2 velocity = vec2(0.0), lean = vec2(0.0);
+    float steep = 0.0;
+    /* In a loop, so that the matrices are loaded where they are used, not kept in registers. */
+    [[dont_unroll]] for (int i = 0; i < 2; i++) {
+        float image = masu_image_far(far, i == 0 ? curvature / cosine : curvature * cosine);
+        vec4 shown = image_moved(point, along, image, mix(shift, thing, image / max(far, 1e-9)), eyes, size);
+        if (!(shown.w > 0.0)) {
             return masu_unmoved;
         }
-        velocity.xy = across.xy + lean * (dot(lean, velocity.xy - across.xy) / steep);
+        if (i > 0) {
+            velocity = shown.xy + lean * (dot(lean, velocity - shown.xy) / steep);
+            break;
+        }
+        velocity = shown.xy;
+        vec3 aside = g.normal + along * cosine;
+        lean = vec2(dot(aside, frame.right.xyz) / frame.right.w, -dot(aside, frame.up.xyz) / frame.up.w);
+        steep = dot(lean, lean);
+        if (!(curvature > 0.0 && steep > 1e-6)) {
+            break;
+        }
     }
-    return packHalf2x16(clamp(velocity.xy, vec2(-60000.0), vec2(60000.0)));
+    return packHalf2x16(clamp(velocity, vec2(-60000.0), vec2(60000.0)));
 }
 
 uint motion_of(uvec2 texel, masu_guide g)

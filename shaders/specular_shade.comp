@@ -12,7 +12,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any hit may have a coat */
 #define MASU_LOCAL_SHADOWS_FOUR /* four taps, not nine: fewer registers, as MASU_SHELVED */
-#define MASU_SHELVED
+#define MASU_SHELVED true
 #include "push/specular_shade.h"
 #include "shared/lights.h"
 #include "shared/trace.h"
@@ -63,19 +63,23 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
     if (masu_is_unlit(m.surface)) {
         return m.surface.emissive;
     }
-#ifdef MASU_LIGHTS
-    masu_around around = masu_ambient_first(m.surface, rel, masu_base_normal(m.surface, m.normal));
-#endif
-    masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
+    /* Each step leaves few values for the next: fewer registers. */
     vec2 seen = vec2(1.0);
 #ifdef MASU_SUN_MAP
-    if (dot(m.normal, frame.sun_direction.xyz) > 0.0) {
+    /* Towards the sun, but not frame.sun_direction, which would stay in registers until the sun is shaded. */
+    if (dot(m.normal, shadow.row2[0].xyz) > 0.0) {
         seen.x = masu_sun_seen(rel, m.normal, dot(rel, frame.forward.xyz));
     }
 #endif
 #ifdef MASU_LIGHTS
+    masu_around around = masu_ambient_first(m.surface, rel, masu_base_normal(m.surface, m.normal));
+#else
+    masu_around around = masu_ambient_at(rel, masu_base_normal(m.surface, m.normal));
+#endif
+    masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
     masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
     masu_lit lit = masu_shade(m.surface, b, around, seen, sky);
+#ifdef MASU_LIGHTS
     masu_light_sum sum = masu_light_sum(lit.diffuse + lit.specular + m.surface.emissive);
     masu_shelved_bsdf shelf = masu_shelve(b);
     uint lights = masu_light_count();
@@ -87,47 +91,53 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
     }
     return sum.light;
 #else
-    masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
-    masu_lit lit = masu_shade(m.surface, b, rel, seen, sky);
     return lit.diffuse + lit.specular + m.surface.emissive;
 #endif
+}
+
+/* Radiance that a hit sends back along the ray from a point, without the air between. */
+vec3 hit_light(uvec4 hit, masu_guide g, vec3 point, vec3 direction, float t)
+{
+    vec3 rel = masu_specular_origin(point, g) - frame.trace_eye.xyz + direction * t;
+    met m;
+#ifdef MASU_TRACE_POLYGONS
+    if ((hit.y & MASU_HIT_SDF) == 0u) {
+        /* Width of the lobe at the hit: half of the lobe is within its roughness squared. */
+        float width = masu_specular_width(g) + t * (g.roughness * g.roughness + frame.up.w * 2.0 / float(pc.render_height));
+        m = met_polygon(hit, direction, width);
+    } else
+#endif
+    {
+        m = met_sdf(hit);
+    }
+#ifdef MASU_LIGHTS
+    if (masu_shared_lights && push.accumulate == 0u && any(greaterThan(m.surface.emissive, vec3(0.0)))) {
+        vec3 eye = -masu_normalize(point, g.normal);
+        m.surface.emissive *= masu_met_share(rel, point, g.normal, eye, g.roughness);
+    }
+#endif
+    return radiance(m, rel, direction);
 }
 
 vec4 light_of(uvec2 texel, masu_guide g)
 {
     uvec4 hit = texelFetch(hit_image, ivec2(texel), 0);
-    uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
     vec3 point = masu_specular_point(texel, g);
-    vec3 direction = masu_unpack_direction(ray.x);
+    vec3 direction = masu_unpack_direction(texelFetch(ray_image, ivec2(texel), 0).r);
     float t = masu_met_at(hit);
-    vec3 light = vec3(0.0);
     float air = foggy ? masu_air_depth_from(point, direction, t) : 0.0;
+    vec4 light;
     if (t >= 0.0) {
-        vec3 rel = masu_specular_origin(point, g) - frame.trace_eye.xyz + direction * t;
-        met m;
-#ifdef MASU_TRACE_POLYGONS
-        if ((hit.y & MASU_HIT_SDF) == 0u) {
-            /* Width of the lobe at the hit: half of the lobe is within its roughness squared. */
-            float width = masu_specular_width(g) + t * (g.roughness * g.roughness + frame.up.w * 2.0 / float(pc.render_height));
-            m = met_polygon(hit, direction, width);
-        } else
-#endif
-        {
-            m = met_sdf(hit);
-        }
-#ifdef MASU_LIGHTS
-        if (masu_shared_lights && push.accumulate == 0u && any(greaterThan(m.surface.emissive, vec3(0.0)))) {
-            vec3 eye = -masu_normalize(point, g.normal);
-            m.surface.emissive *= masu_met_share(rel, point, g.normal, eye, g.roughness);
-        }
-#endif
-        light = radiance(m, rel, direction);
+        light = vec4(hit_light(hit, g, point, direction, t), t);
+        light.rgb = masu_seen_along(light.rgb, false, vec4(0.0, 0.0, 0.0, 1.0), direction, foggy, air);
+    } else {
+        light = vec4(vec3(0.0), frame.trace_anchor.w);
+        light.rgb = masu_seen_along(light.rgb, true, vec4(0.0, 0.0, 0.0, 1.0), direction, foggy, air);
     }
-    light = masu_seen_along(light, !(t >= 0.0), vec4(0.0, 0.0, 0.0, 1.0), direction, foggy, air);
     if (push.accumulate != 0u) {
-        light *= masu_unpack_shared(ray.y);
+        light.rgb *= masu_unpack_shared(texelFetch(ray_image, ivec2(texel), 0).g);
     }
-    return vec4(light, t >= 0.0 ? t : frame.trace_anchor.w);
+    return light;
 }
 
 void main()

@@ -268,15 +268,10 @@ void main()
     if (masu_is_unlit(s)) {
         color = s.emissive * opacity;
     } else {
-        masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
-#ifdef MASU_LIGHTS
         masu_around around = masu_ambient_at(in_rel, masu_base_normal(s, n));
+        masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
         masu_bsdf b = masu_bsdf_make(s, n, -direction);
         masu_lit lit = masu_shade(s, b, around, seen, sky);
-#else
-        masu_bsdf b = masu_bsdf_make(s, n, -direction);
-        masu_lit lit = masu_shade(s, b, in_rel, seen, sky);
-#endif
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
         surface = taken = 1.0 - through * (1.0 - mirrored);
         bool rough = any_rough && (in_thing.y & MASU_MAP_TINTED) != 0u && s.roughness > MASU_SHARP_GLASS;

@@ -200,7 +200,7 @@ static masu_result query_device(const masu_desc *desc, masu_device_info *out,
     if (result) return result;
     if (found.supported & MASU_FEATURE_SAMPLER_ANISOTROPY)
         found.max_anisotropy = vk.properties.limits.maxSamplerAnisotropy;
-    masu_list_extensions(&found);
+    masu_list_extensions(&vk, &found);
     *out = found;
     return MASU_OK;
 }

@@ -1,13 +1,15 @@
 #!/bin/bash
 # hostile.sh: masu-bake over every file of Debian's assimp-testmodels, broken ones included. Each must
 # end within 30 seconds and 2 GiB with a blob that the runtime's reader accepts (masu-bake asks it), or
-# with exit code 1 and one line that says why. With RENDER=1 each blob is drawn too, 64x64.
+# with exit code 1 and one line that says why. With RENDER=1 each blob is drawn too, 64x64, on each of $DRIVERS (system;
+# drivers.sh has others).
 #
 #   hostile.sh [FOLDER]     prints a table of outcomes; exit code 1 if any is another
 set -u
 cd "$(dirname "$0")/.." || exit 1
 bake=$(realpath "${BUILD:-build}/bin/masu-bake")
 masu=$(realpath "${BUILD:-build}/bin/masu")
+cache=$(realpath -m "${BUILD:-build}/cache")
 models=${1:-/usr/share/assimp/models}
 if [ ! -d "$models" ]; then
     echo "hostile: $models is missing (package assimp-testmodels): skipped"
@@ -16,6 +18,9 @@ fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 config_sanitize=; [ "${config:-}" != sanitize ] || config_sanitize=1 # there Assimp's own stderr is shown
+drivers=${RENDER:+${DRIVERS:-system}}
+[ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
+for driver in $drivers; do tests/drivers.sh "$driver" > /dev/null || exit 1; done
 declare -A count=()
 bad=0 slowest=0 slowest_file=- largest=0 largest_file=-
 
@@ -24,6 +29,29 @@ wrong() {
     note "WRONG: $1"
     echo "WRONG: $file: $1: $(head -c 300 "$folder/stderr")"
     bad=$((bad + 1))
+}
+
+# draw DRIVER: the blob, on it; its words go to $folder/render
+draw() (
+    icd=$(tests/drivers.sh "$1")
+    [ -z "$icd" ] || export VK_ICD_FILENAMES=$icd VK_DRIVER_FILES=$icd
+    export NODEVICE_SELECT=1
+    # shellcheck disable=SC1090
+    [ ! -e "build/drivers/$1/env" ] || . "build/drivers/$1/env"
+    # As in run.sh: other widths of vectors have other code.
+    export MESA_SHADER_CACHE_DIR=$cache/$1${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
+    mkdir -p "$MESA_SHADER_CACHE_DIR"
+    exec timeout 180 "$masu" render "$folder/x.masu" --frame -o "$folder/x.png" --size 64x64 --quiet \
+        > "$folder/stdout" 2> "$folder/render"
+)
+
+# drawn: if one of them fails, exit 1 with $driver and the exit code in $code (124: not within 180 s) set
+drawn() {
+    for driver in $drivers; do
+        draw "$driver"
+        code=$?
+        [ $code = 0 ] || return 1
+    done
 }
 
 while read -r file; do
@@ -42,9 +70,8 @@ while read -r file; do
         if [ "$peak" -gt $largest ]; then largest=$peak largest_file=$file; fi
         if [ ! -s "$folder/x.masu" ]; then
             wrong "no output"
-        elif [ "${RENDER:-}" ] && ! timeout 60 "$masu" render "$folder/x.masu" --frame \
-            -o "$folder/x.png" --size 64x64 --quiet > "$folder/stdout" 2> "$folder/render"; then
-            wrong "does not render: $(head -c 200 "$folder/render")"
+        elif ! drawn; then
+            wrong "does not render on $driver, exit code $code: $(head -c 200 "$folder/render")"
         elif grep -q 'warning:' "$folder/stderr"; then
             note "blob, with warnings"
         else

@@ -36,19 +36,22 @@ drivers=${DRIVERS:-system}
 jobs=${MASU_TEST_JOBS:-$(nproc)}
 # Tests of programs, of what a validation layer says of shaders, and of the host alone hardly depend on the driver: the
 # first driver that is there runs them.
-once=" test_bench test_cli test_gpu_av test_reference test_soak "
+once=" test_bench test_cli test_gpu_av test_mutated test_reference test_soak "
 # Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
 # lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it (frame,
-# fixed_memory, upscale); what SwiftShader runs as well (far, faults, output, poison, stiff, trace).
-not_lavapipe_25=" test_ao test_bounce test_calls test_devices test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
-not_lavapipe_25+="test_host_pass test_ladder test_live test_load test_occlusion test_output test_pick test_poison test_reserve "
-not_lavapipe_25+="test_local_shadows test_resize test_sdf_casters test_shadow test_shadow_frames test_small_lamps test_specular_filters "
-not_lavapipe_25+="test_specular_sdf test_specular_truth test_stiff test_temporal test_terms test_trace test_truth test_upscale "
+# fixed_memory, upscale); what SwiftShader runs as well (area_lights, far, faults, output, picture_sky, poison, smaa,
+# stiff, tone, trace, velocity).
+not_lavapipe_25=" test_ao test_area_lights test_bounce test_calls test_devices test_failures test_far test_faults test_fixed_memory "
+not_lavapipe_25+="test_frame test_gltf_pictures test_governor test_governor_host test_host_pass test_ladder test_live "
+not_lavapipe_25+="test_live_environment test_load test_local_shadows test_meshes test_occlusion test_output test_pick "
+not_lavapipe_25+="test_picture_sky test_poison test_reserve test_resize test_sdf_casters test_shadow test_shadow_frames "
+not_lavapipe_25+="test_small_lamps test_smaa test_specular_filters test_specular_sdf test_specular_truth test_stiff "
+not_lavapipe_25+="test_temporal test_terms test_tone test_trace test_truth test_upscale test_velocity test_window "
 # SwiftShader takes four times as long to draw. It leaves out decisions of the host and comparisons of many frames:
 # test_conform draws every pass there, test_poison gives each pass hostile bits, test_stiff marches.
 not_swiftshader=" test_ao test_bounce test_calls test_culling test_devices test_failures test_fixed_memory "
-not_swiftshader+="test_frame test_gltf_pictures test_governor test_governor_host test_host_pass test_ladder "
-not_swiftshader+="test_lights test_live test_live_environment test_live_textures test_load test_lods test_meshes "
+not_swiftshader+="test_frame test_gltf_pictures test_governor test_governor_host test_host_pass test_instance_looks test_ladder "
+not_swiftshader+="test_lights test_live test_live_environment test_live_textures test_load test_lods test_memory_kinds test_meshes "
 not_swiftshader+="test_occluders test_occlusion test_pick test_pool test_post test_reinit test_reserve test_resize "
 not_swiftshader+="test_sdf_casters test_shadow test_shadow_frames test_skin test_small_lamps "
 not_swiftshader+="test_specular_filters test_specular_sdf test_specular_textures test_specular_truth "
@@ -268,7 +271,8 @@ mkdir -p "$MESA_SHADER_CACHE_DIR"
 
 # The check that builds the tree anew and runs this again takes half of the processors. It goes on beside the GPU
 # tests, which build nothing, and not beside scripts that do.
-for kind in unit script fuzz; do
+# The short ones come last: then no processor waits for a long one.
+for kind in script fuzz unit; do
     for program in ${programs[$kind]}; do
         [[ $program == */full/sanitize.sh ]] || start $kind $kind "$program"
     done

@@ -87,6 +87,9 @@ Other extreme inputs have their own tests:
 | failure of the n-th Vulkan call in init, load and resize; device loss; a memory block that is one byte too small | an error with a name, and no leaks | `test_failures`, `test_faults` |
 | each limit of `masu_desc`, and one above it | an error that names the limit | `test_desc` |
 | random rungs, cameras, scenes and sizes, 20,000 frames | constant memory, finite images | `make soak` |
+| scenes with random bytes changed and the hash made to fit, 3,000 on lavapipe 25 | one line of refusal, or finite images and a silent validation layer | `test_mutated`: `LONG=1`, `MUTATED=500` |
+| broken models, drawn on any driver | one line of refusal, or an image | `make hostile RENDER=1 DRIVERS=lavapipe-25` |
+| four renderers in four threads, the threads of the programs | no report of the thread sanitizer; the same pixels as alone | `make threads` |
 
 **Driver memory.** On Mesa 22.3.6 the process grows by 0.9 MB per frame of `test_sky`, and not at all in `test_live` and
 `test_velocity`. The driver causes this: frames that are recorded once and submitted repeatedly, without calls of the

@@ -26,7 +26,7 @@ TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh fac
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh bake_limits.sh bake_probes.sh bake_rays.sh bake_reflected_sdf.sh \
-    compare.sh drive.sh meso.sh scene_forms.sh sdfc.sh view.sh)
+    bake_static.sh compare.sh drive.sh meso.sh scene_forms.sh sdfc.sh view.sh)
 # Nor sums and simulated loads, which touch no memory but their own variables.
 SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull device_class environment governor governor_host governor_loads \
     ladder masks sequence sky vndf)
@@ -62,6 +62,9 @@ $(BUILD)/tests/unit/%: $(BUILD)/obj/tests/unit/%.o $(TEST_ARCHIVES)
 $(BUILD)/tests/gpu/%: $(BUILD)/obj/tests/gpu/%.o $(KEEP_LOADED) $(TEST_ARCHIVES)
 	$(link)
 $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_ARCHIVES)
+	$(link)
+$(BUILD)/tests/threads: LIBS = $(MASU_LIBS)
+$(BUILD)/tests/threads: $(BUILD)/obj/tests/threads.o $(KEEP_LOADED) $(PLATFORM)
 	$(link)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
@@ -109,6 +112,13 @@ $(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
 .PHONY: stability
 stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme inputs, conditions and measured values on three drivers
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tests/stability.sh
+
+# The thread sanitizer: minutes, most of them to compile.
+.PHONY: threads threads-built
+threads: $(GENERATED) $(MADE)/scenes/test_reserve.masu $(MADE)/stiff/blend.masu $(MADE)/stiff/blend.truth.so $(MADE)/textures/made ## run four renderers in four threads, and the threads of the programs, under the thread sanitizer: DRIVERS=
+	+$(V)$(more) config=thread BUILD='$(BUILD)/thread' MADE='$(MADE)' threads-built
+threads-built: $(BUILD)/tests/threads $(BUILD)/bin/masu $(BUILD)/bin/masu-bake
+	$(V)BUILD='$(BUILD)' MADE='$(MADE)' DRIVERS='$(DRIVERS)' tests/threads.sh
 
 # Random rungs, cameras, scenes, sizes; the tests do a twentieth of it.
 .PHONY: soak
@@ -188,5 +198,6 @@ fuzz_seeds = SEEDS_$(notdir $(1))='$(FUZZ_SEEDS_$(patsubst fuzz_%,%,$(notdir $(1
 RUN_TESTS  = $(SANITIZER_ENV) $(SPIRV_CACHE) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' MADE='$(MADE)' config='$(config)' \
     WERROR='$(WERROR)' DRIVERS='$(DRIVERS)' LONG='$(LONG)' $(foreach t,$(FUZZ_TESTS),$(call fuzz_seeds,$(t))) \
     tests/run.sh
-RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(FUZZ_TESTS)
+# With FULL=1 the fuzzers run with the sanitizers (tests/full), on the same inputs.
+RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(if $(FULL),,$(FUZZ_TESTS))
 RUN_GPU    = --gpu $(GPU_TESTS)

@@ -103,7 +103,7 @@ $(MADE)/bin/masu-bake.code: $(MADE)/bin/masu-bake
 
 # The textures of scenes/textures.json and of the tests, generated here by formulas.
 # stb's JPEG writer shifts bits out of signed integers.
-$(MADE)/obj/tools/generate/make_textures.o $(BUILD)/obj/tools/bench/page_image.o: FOLDER_FLAGS += -fno-sanitize=shift
+$(MADE)/obj/tools/generate/make_textures.o: FOLDER_FLAGS += -fno-sanitize=shift
 $(MADE)/tools/make_textures: LIBS = -lm
 $(MADE)/tools/make_textures: $(MADE)/obj/tools/generate/make_textures.o
 	$(link)
@@ -140,4 +140,4 @@ $(BUILD)/examples/drive: $(call objects,$(wildcard examples/drive/*.c))
 # A scene's field in double precision (masu-sdfc --c), next to the scene as NAME.truth.so.
 %.truth.so: %.truth.c
 	@echo "  TRUTH   $@"
-	$(V)$(CC) -std=c11 -O2 -w -shared -fPIC -o $@ $< -lm
+	$(V)$(CC) -std=c11 -O3 -w -shared -fPIC -o $@ $< -lm

@@ -109,3 +109,33 @@ bool masu_isa_receive(const char *text, masu_isa_rows *rows) {
     }
     return true;
 }
+
+bool masu_isa_is_printed(const char *line) { return strncmp(line, "SHADER-DB: ", 11) == 0; }
+
+/* Reads the number before a given word. */
+static double before_word(const char *line, const char *word) {
+    const char *at = strstr(line, word);
+    while (at && at > line && strchr("0123456789.", at[-1])) at--;
+    return at ? strtod(at, NULL) : (double)NAN;
+}
+
+void masu_isa_read_printed(const char *line, masu_isa_row *row) {
+    static const struct {
+        const char *printed, *stage;
+    } stages[] = {{"_VERTEX", "Vertex Shader"},
+                  {"_POSITION", "Vertex Shader; position"},
+                  {"_VARYING", "Vertex Shader; others"},
+                  {"_FRAGMENT", "Fragment Shader"},
+                  {"_COMPUTE", "Compute Shader"}};
+    const char *stage = "(no stage)", *spills = strstr(line, " loops, ");
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
+        if (strstr(line, stages[i].printed)) stage = stages[i].stage;
+    snprintf(row->stage, sizeof row->stage, "%s", stage);
+    row->value[MASU_ISA_WAVES] = before_word(line, " threads");
+    row->value[MASU_ISA_INSTRUCTIONS] = before_word(line, " inst,");
+    row->value[MASU_ISA_CYCLES] = before_word(line, " cycles");
+    if (!spills) return;
+    char *end;
+    row->value[MASU_ISA_SPILLS] = strtod(spills + 8, &end);
+    if (*end == ':') row->value[MASU_ISA_FILLS] = strtod(end + 1, NULL);
+}

@@ -75,4 +75,10 @@ bool masu_isa_send(const masu_isa_rows *rows, FILE *f);
  * malformed. */
 bool masu_isa_receive(const char *text, masu_isa_rows *rows);
 
+/* A line of PanVK's statistics, one for each compiled shader: "SHADER-DB: MESA_SHADER_COMPUTE
+ * shader: 90 inst, .., 12.5 cycles, .., 2 threads, 0 loops, 0:0 spills:fills". */
+bool masu_isa_is_printed(const char *line);
+/* Reads stage and numbers of such a line; what it lacks stays as it is. */
+void masu_isa_read_printed(const char *line, masu_isa_row *row);
+
 #endif

@@ -82,41 +82,12 @@ static masu_isa_row *add_row(const char *stage) {
     return row;
 }
 
-/* PanVK prints its statistics to standard error, a line for each compiled shader: "SHADER-DB:
- * MESA_SHADER_COMPUTE shader: 90 inst, .., 12.5 cycles, .., 2 threads, 0 loops, 0:0
- * spills:fills". */
+/* PanVK prints its statistics to standard error. */
 static bool is_printed(void) { return getenv("BIFROST_MESA_DEBUG") != NULL; }
 
-/* Reads the number before a given word. */
-static double before_word(const char *line, const char *word) {
-    const char *at = strstr(line, word);
-    while (at && at > line && strchr("0123456789.", at[-1])) at--;
-    return at ? strtod(at, NULL) : (double)NAN;
-}
-
 static void read_line(const char *line) {
-    static const struct {
-        const char *printed, *stage;
-    } stages[] = {{"_VERTEX", "Vertex Shader"},
-                  {"_POSITION", "Vertex Shader; position"},
-                  {"_VARYING", "Vertex Shader; others"},
-                  {"_FRAGMENT", "Fragment Shader"},
-                  {"_COMPUTE", "Compute Shader"}};
-    const char *stage = "(no stage)", *spills = strstr(line, " loops, ");
-    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
-        if (strstr(line, stages[i].printed)) stage = stages[i].stage;
-    if (null.rows->count == MASU_ISA_ROWS) {
-        fail("too many pipelines");
-        return;
-    }
-    masu_isa_row *row = add_row(stage);
-    row->value[MASU_ISA_WAVES] = before_word(line, " threads");
-    row->value[MASU_ISA_INSTRUCTIONS] = before_word(line, " inst,");
-    row->value[MASU_ISA_CYCLES] = before_word(line, " cycles");
-    if (!spills) return;
-    char *end;
-    row->value[MASU_ISA_SPILLS] = strtod(spills + 8, &end);
-    if (*end == ':') row->value[MASU_ISA_FILLS] = strtod(end + 1, NULL);
+    if (null.rows->count == MASU_ISA_ROWS) fail("too many pipelines");
+    else masu_isa_read_printed(line, add_row(""));
 }
 
 /* Redirects standard error to a file; returns the descriptor to restore, or -1. */
@@ -141,7 +112,7 @@ static void read_captured(int was, FILE *file) {
     if (!file) return;
     rewind(file);
     while (fgets(line, sizeof line, file)) {
-        if (!strncmp(line, "SHADER-DB: ", 11)) read_line(line);
+        if (masu_isa_is_printed(line)) read_line(line);
         else fputs(line, stderr);
     }
     fclose(file);

@@ -1,15 +1,17 @@
 #!/bin/bash
-# run.sh [RESULTS]: tries the mutants of drawn.tsv (draw.awk) in turn, each in a copy of the tree below
-# $MUTANTS_DIR, and appends `number verdict by seconds` to RESULTS; those that it lists already are not tried again.
+# run.sh [RESULTS]: tries the mutants of drawn.tsv (draw.awk) in turn, in a copy of the tree below $MUTANTS_DIR, and
+# appends `number operator verdict by seconds` to RESULTS; those that it lists already are not tried again.
 #
-# Verdicts: caught (by the first test that failed, or by the bake of a scene), survived, no-compile (the next one of
-# the list is tried instead). First run the unit tests and scripts of the mutant's subject, then its GPU tests, then
-# all other unit tests. Needs a tree that is built, with its tests; changes nothing in it. After a change of the tree
-# remove $MUTANTS_DIR.
+# Verdicts: caught (by the first test that failed, or that could not be built), survived, no-compile (the next one of
+# its operator is tried instead). The unit tests and scripts of the mutant's subject run first, then its GPU tests, each
+# alone and stopped at its first failure; only they are linked anew, and scenes are baked again only for a mutant of a
+# shader that they hold. After a mutant what it changed is copied back. Needs a tree that is built; changes nothing in
+# it. After a change of the tree remove $MUTANTS_DIR.
 #
-# WANTED=60        as many with a verdict other than no-compile
+# WANTED=12        of each operator, with a verdict other than no-compile
 # ONLY='3 17'      these numbers
 # DRIVERS=system   drivers of the GPU tests, as of `make gpu`; none: only the unit tests and scripts of the subject
+# OTHERS=1         a survivor is tried against all other unit tests
 # MINUTES=0        starts none after as many minutes; 0: no end
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit 1
@@ -18,10 +20,24 @@ folder=${MUTANTS_DIR:-/tmp/masu-mutants}
 results=$(realpath -m "${1:-build/mutants.tsv}")
 drawn=$tree/lab/mutants/drawn.tsv
 work=$folder/work
-export MASU_TEST_TIMEOUT=${MASU_TEST_TIMEOUT:-240}
+export MASU_TEST_TIMEOUT=${MASU_TEST_TIMEOUT:-240} MASU_TEST_JOBS=1
+export MASU_SPIRV_CACHE=$folder/spirv
 mkdir -p "$folder" "$(dirname "$results")"
 touch "$results"
 [ -d "$folder/base" ] || { cp -a "$tree" "$folder/base.part" && mv "$folder/base.part" "$folder/base"; } || exit 1
+
+# The copy as it was: what is newer than the last mutant's start comes from the base again, or goes.
+restore() {
+    if [ -d "$work" ]; then
+        (cd "$work" && find . -type f -newer "$folder/start") | while read -r f; do
+            if [ -e "$folder/base/$f" ]; then cp -p "$folder/base/$f" "$work/$f"; else rm -f "$work/$f"; fi
+        done
+    else
+        cp -a "$folder/base" "$work"
+    fi
+    touch "$folder/start"
+    sleep 0.02
+}
 
 # tests_of FILE: sets unit and gpu to the tests of its subject.
 tests_of() {
@@ -67,24 +83,59 @@ tests_of() {
     esac
 }
 
-# keep KIND PREFIX WORD...: the words that name tests of that kind.
+# existing KIND WORD...: the words that name tests of that kind; NAME.sh for a script.
 existing() {
     local kind=$1 name
     shift
     for name; do
-        [ -e "tests/$kind/test_$name.c" ] && echo "$name" && continue
-        [ "$kind" = unit ] && [ -e "tests/scripts/$name.sh" ] && echo "$name"
-    done | sort -u | tr '\n' ' '
+        [ ! -e "tests/$kind/test_$name.c" ] || echo "$name"
+        [ "$kind" != unit ] || [ ! -e "tests/scripts/$name.sh" ] || echo "$name.sh"
+    done | tr '\n' ' '
 }
 
-# attempt TARGET TESTS [DRIVERS]: sets by to what failed; exit 1 if something did.
+# built TREE TARGET...: makes only these. A shader that no scene holds needs no optimiser and bakes nothing.
+built() {
+    local in=$1 path=$PATH quick='' keep='-o build/bin/masu-bake.code -o build/textures/made'
+    shift
+    case $file in
+        shaders/cone* | shaders/march* | shaders/classify* | shaders/update* | shaders/silhouettes* | shaders/sdf*) keep='' ;;
+        shaders/*) path=$in/tests/cached:$PATH quick=1 ;;
+    esac
+    # shellcheck disable=SC2086
+    PATH=$path MASU_SPIRV_QUICK=$quick timeout 900 make -C "$in" WERROR=1 $keep "$@" &> "$in.log"
+}
+
+# run_test TREE KIND NAME: one test; stopped when it has failed.
+run_test() {
+    local in=$1 kind=$2 name=$3 program log pid failed=
+    program=build/tests/$kind/test_$name
+    log=$in/build/test-results
+    if [[ $name == *.sh ]]; then
+        kind=script program=tests/scripts/$name
+        built "$in" build/bin/masu build/bin/masu-bake build/bin/masu-sdfc || return 1
+    else
+        built "$in" "$program" build/tests/driver_info || return 1
+    fi
+    rm -rf "$log"
+    (cd "$in" && BUILD=build MADE=build CC=gcc CXX=g++ WERROR=1 exec setsid tests/run.sh --"$kind" "$program") &> "$in.log" &
+    pid=$!
+    while kill -0 $pid 2> /dev/null; do
+        sleep 0.5
+        grep -qs '  FAILED  \]' "$log"/*/*.log && failed=1 && kill -- -$pid 2> /dev/null
+    done
+    wait $pid && [ ! "$failed" ]
+}
+
+# attempt KIND TEST...: sets by to the first that fails; exit 1 if one does.
 attempt() {
-    [ "$2" ] || return 0
-    timeout 900 make -C "$work" WERROR=1 "$1" TESTS="$2" DRIVERS="${3:-system}" &> "$work.log" && return 0
-    by=$(sed -n '/^  FAIL/{s/^  FAIL  *\([^ ]*\).*/\1/;p;n;s/^ *\(failed\|died in it\|timed out\|skipped\)[^:]*: */: /;p;q;}' "$work.log" |
-        tr -d '\n')
-    by=${by:-$(grep -m 1 -q '^  BAKE' "$work.log" && echo 'bake of a scene' || echo "make $1")}
-    return 1
+    local kind=$1 name
+    shift
+    for name; do
+        run_test "$work" "$kind" "$name" && continue
+        run_test "$folder/base" "$kind" "$name" || continue # fails without the mutant
+        by=$name
+        return 1
+    done
 }
 
 # apply LINE BEFORE AFTER FILE: to the line nearest to LINE that has the text BEFORE.
@@ -98,50 +149,38 @@ apply() {
 }
 
 judge() {
-    local file=$1 others
+    local object=build/obj/${file%.c}.o
     by=-
-    timeout 600 make -C "$work" WERROR=1 tools &> "$work.log" || { verdict=no-compile && return; }
-    tests_of "$file"
-    unit=$(passing unit $(existing unit $unit))
-    [ "${DRIVERS:-system}" = none ] || gpu=$(passing gpu $(existing gpu $gpu))
-    verdict=caught
-    attempt unit "$unit" || return
-    [ "${DRIVERS:-system}" = none ] && verdict=survived && return
-    attempt gpu "$gpu" "${DRIVERS:-system}" || return
     case $file in
-        shaders/*) others="shader_gates" ;; # the others do not read shaders
-        *) others=$(cd "$work/tests/unit" && ls test_*.c | sed 's/^test_//; s/\.c$//' | grep -vxF -f <(tr ' ' '\n' <<< "$unit")) ;;
-    esac
-    attempt unit "$(passing unit $others)" || return
+        *.c) built "$work" "$object" ;;
+        shaders/*) built "$work" build/lib/libmasu.a ;;
+        *) built "$work" build/bin/masu ;;
+    esac || { verdict=no-compile && return; }
+    tests_of "$file"
+    verdict=caught
+    # shellcheck disable=SC2046,SC2086
+    attempt unit $(existing unit $unit) || return
+    verdict=survived
+    [ "${DRIVERS:-system}" != none ] || return
+    verdict=caught
+    # shellcheck disable=SC2046,SC2086
+    attempt gpu $(existing gpu $gpu) || return
+    # shellcheck disable=SC2046
+    [ ! "${OTHERS:-}" ] || attempt unit $(find "$work/tests/unit" -name 'test_*.c' | sed 's/.*test_//; s/\.c$//') || return
     verdict=survived
 }
 
-# passing KIND TEST...: those that pass without a mutant; each is tried once.
-passing() {
-    local kind=$1 name
-    shift
-    for name; do
-        grep -q "^$kind $name " "$folder/control" 2> /dev/null || {
-            timeout 900 make -C "$folder/base" WERROR=1 "$kind" TESTS="$name" DRIVERS="${DRIVERS:-system}" &> "$folder/control.log"
-            echo "$kind $name $?" >> "$folder/control"
-        }
-        grep -q "^$kind $name 0" "$folder/control" && echo "$name"
-    done | tr "\n" " "
-}
-
 end=$((SECONDS + ${MINUTES:-0} * 60))
-while IFS=$'\t' read -r number _ file line before after; do
+while IFS=$'\t' read -r number operator file line before after; do
     [ -z "${ONLY:-}" ] || [[ " $ONLY " == *" $number "* ]] || continue
-    [ "$(grep -vc 'no-compile' "$results")" -lt "${WANTED:-60}" ] || break
+    [ "$(awk -v o="$operator" '$2 == o && $3 != "no-compile"' "$results" | wc -l)" -lt "${WANTED:-12}" ] || continue
     [ "${MINUTES:-0}" = 0 ] || [ $SECONDS -lt $end ] || break
     grep -q "^$number	" "$results" && continue
     began=$SECONDS
-    rm -rf "$work"
-    cp -a "$folder/base" "$work" || exit 1
-    for f in "$work"/build/drivers/*/{icd.json,env}; do [ ! -e "$f" ] || sed -i "s|$tree/|$work/|g" "$f"; done
+    restore
     apply "$line" "$before" "$after" "$work/$file" || { echo "$number: no such line in $file" >&2 && continue; }
-    judge "$file"
-    printf '%s\t%s\t%s\t%s\n' "$number" "$verdict" "$by" $((SECONDS - began)) | tee -a "$results"
+    judge
+    printf '%s\t%s\t%s\t%s\t%s\n' "$number" "$operator" "$verdict" "$by" $((SECONDS - began)) | tee -a "$results"
     cp "$work.log" "$folder/$number.log"
 done < "$drawn"
-cut -f 2 "$results" | sort | uniq -c
+cut -f 3 "$results" | sort | uniq -c

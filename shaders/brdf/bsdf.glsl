@@ -290,8 +290,6 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
 #ifdef MASU_SURFACE
     matte_f90 = max(min(matte_f90, masu_sane(s.edge, 0.0, 1.0)), f0);
 #endif
-    b.f0 = mix(masu_dielectric_f0(s, f0), albedo, metallic);
-    b.f90 = mix(matte_f90, metal_f90, metallic);
 #ifdef MASU_SURFACE
     b.sheen = b.grain = vec3(0.0);
     b.sheen_alpha = b.bared = b.grain_alpha = 1.0;
@@ -332,6 +330,9 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
     masu_albedo all = masu_albedo_from(b, base, covered, coat);
     b.seen = masu_albedo_of(b, b.n_v, over);
 
+    /* After the tables, so that albedo and metallic are all that is kept during their lookups. */
+    b.f0 = mix(masu_dielectric_f0(s, f0), albedo, metallic);
+    b.f90 = mix(matte_f90, metal_f90, metallic);
     float lost = masu_lost(b.seen);
     vec3 rest = mix(vec3(matte_rest), masu_rest_color(albedo, metal_f90, base.x), metallic) * lost;
     vec3 below = albedo * ((1.0 - metallic) * (1.0 - masu_matte(b, b.seen)));

@@ -69,22 +69,21 @@ uint masu_light_list(uvec2 tile, uvec2 size)
  * on the lights that reach the pixel, and their order, are the same. */
 struct masu_asked {
     uint count;
-    uint list;
-    bool all_lights;
+    uint list; /* MASU_TILE_ALL: all lights */
 };
 
 masu_asked masu_lights_asked(uvec2 tile, uvec2 size, bool by_tiles)
 {
     uint list = masu_light_list(tile, size);
     uint listed = by_tiles ? masu_light_tiles[list] : MASU_TILE_ALL;
-    bool all_lights = listed == MASU_TILE_ALL;
-    return masu_asked(all_lights ? masu_light_count() : min(listed, uint(MASU_TILE_LIGHTS_MAX)), list, all_lights);
+    return listed == MASU_TILE_ALL ? masu_asked(masu_light_count(), MASU_TILE_ALL)
+                                   : masu_asked(min(listed, uint(MASU_TILE_LIGHTS_MAX)), list);
 }
 
 /* Index of the i-th light. */
 uint masu_light_asked(masu_asked asked, uint i)
 {
-    return asked.all_lights ? i : min(masu_light_tiles[asked.list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
+    return asked.list == MASU_TILE_ALL ? i : min(masu_light_tiles[asked.list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
 }
 #endif
 
@@ -266,6 +265,9 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     }
     /* Recomputed, in another form so that the compiler does not merge them: kept alive, they would
      * take six registers during the atlas reads. */
+    if (masu_few_registers) {
+        light = masu_lights[min(number, masu_light_count() - 1u)]; /* the same, for compilers another */
+    }
     to = -(rel - light.position.xyz);
     l = to * masu_rsqrt(dot(to, to));
 #endif
@@ -292,9 +294,16 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     vec3 form = vec3(0.0);
     if (area) {
         form = masu_rectangle(b, to, u, v);
+        if (masu_few_registers) {
+            light = masu_lights[min(number, masu_lights_header.x)]; /* as above */
+            to = -(rel - light.position.xyz);
+            l = to * masu_rsqrt(dot(to, to));
+        }
     }
 #ifdef MASU_SHELVED
-    masu_unshelve(shelf, b);
+    if (MASU_SHELVED) {
+        masu_unshelve(shelf, b);
+    }
 #endif
     vec3 color = light.color.rgb * strength;
     bool directed = true;

@@ -143,14 +143,14 @@ vec3 masu_probe_irradiance(uint quad, masu_probe_factors f, out float valid)
     return max(vec3(rg, ba.x) * (masu_probe_first + sum), vec3(0.0));
 }
 
-/* Irradiance / pi of a surface point with that normal; finite for any operands. w: weight of the
- * grid: 1 inside, falling to 0 within a cell around it. `from`: the point relative to the first
- * probe. */
+/* Irradiance / pi of a surface point with that normal; finite for any `from` and any finite normal
+ * within -1..1. w: weight of the grid: 1 inside, falling to 0 within a cell around it. `from`: the
+ * point relative to the first probe. */
 vec4 masu_probe_light(vec3 from, vec3 normal)
 {
     from = masu_sane(from, -1e15, 1e15);
-    normal = masu_sane(normal, -1.0, 1.0);
-    /* Loaded once, not in the loop: compilers cannot assume that the grid is constant. */
+    /* Loaded once, not in the loop: compilers cannot assume that the grid is constant. The loop has
+     * only what it needs: it has the most registers of all shading. */
     vec4 origin = probe_grid.origin;
     vec3 spacing = probe_grid.spacing.xyz;
     uvec4 counts = probe_grid.counts, more = probe_grid.more;
@@ -165,7 +165,7 @@ vec4 masu_probe_light(vec3 from, vec3 normal)
     vec3 cell = clamp(point / spacing, vec3(0.0), last);
     uvec3 base = min(uvec3(cell), max(counts.xyz, uvec3(2u)) - 2u);
     vec3 f = cell - vec3(base);
-    float diagonal = length(spacing), per_bias = masu_rcp(max(origin.w, 1e-4));
+    float per_diagonal = 1.0 / length(spacing), per_bias = masu_rcp(max(origin.w, 1e-4));
     uint count = counts.x * counts.y * counts.z, side = more.z + 2u;
     uint map_words = more.z > 0u ? side * side : 0u;
     uint maps = count * (counts.w + more.y + more.x) * MASU_PROBE_SET_WORDS;
@@ -174,21 +174,24 @@ vec4 masu_probe_light(vec3 from, vec3 normal)
     lit += count * (MASU_PROBE_LIT_WORDS / 4u);
 #endif
     masu_probe_factors by_normal = masu_probe_basis(normal);
+    /* From a corner to the next along each axis: 0 where the grid has a single probe. */
+    uvec3 step = uvec3(1u, counts.x, counts.x * counts.y) * min(counts.xyz - 1u, uvec3(1u));
+    uint first = (base.z * counts.y + base.y) * counts.x + base.x;
+    vec3 to_first = vec3(base) * spacing - point, side_by_side = spacing * min(last, vec3(1.0));
     vec3 sum = vec3(0.0);
     float total = 0.0;
     for (uint corner = 0u; corner < 8u; corner++) {
         uvec3 high = uvec3(corner, corner >> 1, corner >> 2) & 1u;
-        uvec3 at = min(base + high, counts.xyz - 1u);
         vec3 t = max(mix(1.0 - f, f, vec3(high)), 1e-3);
-        vec3 to = vec3(at) * spacing - point;
+        vec3 to = to_first + vec3(high) * side_by_side;
         float square = dot(to, to);
         float distance = sqrt(max(square, 1e-12));
         vec3 d = to / distance;
         float front = clamp(2.0 + dot(to, normal) * per_bias, 0.0, 1.0);
         float w = t.x * t.y * t.z * (front * front + 0.05);
-        uint probe = (at.z * counts.y + at.y) * counts.x + at.x;
+        uint probe = first + high.x * step.x + high.y * step.y + high.z * step.z;
         if (map_words > 0u && square > 1e-12) {
-            w *= max(masu_probe_seen(maps + probe * map_words, more.z, -d, distance / diagonal), 1e-4);
+            w *= max(masu_probe_seen(maps + probe * map_words, more.z, -d, distance * per_diagonal), 1e-4);
         }
         float valid;
         vec3 e = masu_probe_irradiance(lit + probe * (MASU_PROBE_LIT_WORDS / 4u), by_normal, valid);

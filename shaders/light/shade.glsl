@@ -25,6 +25,10 @@
 #include "light/probes.glsl"
 #endif
 
+/* On Mali and the Raspberry Pi values are loaded or unpacked again instead of kept: 64 registers for
+ * each thread, and on Mali twice the threads at 32. Elsewhere that would only be more instructions. */
+layout(constant_id = 26) const bool masu_few_registers = false;
+
 /* Light that leaves a surface: diffuse and specular. */
 struct masu_lit {
     vec3 diffuse;
@@ -57,15 +61,17 @@ struct masu_around {
 
 masu_around masu_ambient_at(vec3 rel, vec3 n)
 {
-    masu_around around = masu_around(masu_ambient(n), vec3(1.0));
 #ifdef MASU_PROBES
     vec3 eye = (frame.eye_hi.xyz - probe_grid.origin.xyz) + frame.eye_lo.xyz;
     vec4 probes = masu_probe_light(eye + rel, n);
+    masu_around around = masu_around(masu_ambient(n), vec3(1.0));
     vec3 open_sky = max(around.irradiance, vec3(1e-4));
     around.irradiance = mix(around.irradiance, probes.rgb, probes.w);
     around.mirrored = clamp(around.irradiance / open_sky, vec3(0.0), vec3(1.0));
-#endif
     return around;
+#else
+    return masu_around(masu_ambient(n), vec3(1.0));
+#endif
 }
 
 /* The open sky reflected by a surface and its coat; 0 without specular reflection. kept: share of
@@ -225,7 +231,7 @@ masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
 #endif
 }
 
-#ifdef MASU_SHELVED
+#ifdef MASU_SHELVED /* a condition: true, or masu_few_registers */
 /* The colours and related values of a bsdf that only the end of a light's evaluation needs. */
 struct masu_shelved_bsdf {
     uvec2 f0, rest, diffuse, matte;
@@ -271,17 +277,10 @@ void masu_unshelve(masu_shelved_bsdf p, inout masu_bsdf b)
 #endif
 #endif
 
-/* Only the ambient light. b: of s; rel: the point, relative to the camera; seen: visibility of the
- * ambient light; sky: from masu_mirrored_sky. With lights the caller has computed `around` before
- * b. */
-#ifdef MASU_LIGHTS
+/* Only the ambient light. b: of s; around: computed before b (masu_ambient_at needs many registers);
+ * seen: visibility of the ambient light; sky: from masu_mirrored_sky. */
 masu_lit masu_shade_around(masu_surface s, masu_bsdf b, masu_around around, float seen, masu_mirrored sky)
 {
-#else
-masu_lit masu_shade_around(masu_surface s, masu_bsdf b, vec3 rel, float seen, masu_mirrored sky)
-{
-    masu_around around = masu_ambient_at(rel, b.n);
-#endif
     vec3 ambient = around.mirrored * (seen * s.occlusion);
     masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen * s.occlusion),
                             vec3(0.0), masu_bsdf_specular(b));
@@ -301,15 +300,9 @@ masu_lit masu_shade_around(masu_surface s, masu_bsdf b, vec3 rel, float seen, ma
 }
 
 /* Ambient light plus the sun; seen: visibility of the sun and of the ambient light. */
-#ifdef MASU_LIGHTS
 masu_lit masu_shade(masu_surface s, masu_bsdf b, masu_around around, vec2 seen, masu_mirrored sky)
 {
     masu_lit lit = masu_shade_around(s, b, around, seen.y, sky);
-#else
-masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, masu_mirrored sky)
-{
-    masu_lit lit = masu_shade_around(s, b, rel, seen.y, sky);
-#endif
     masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb * seen.x);
     return lit;
 }

@@ -193,7 +193,9 @@ void masu_lobe_axes(masu_bsdf b, out vec3 along, out vec3 aside)
 {
     vec3 away = b.n * dot(b.n, b.v) - b.v;
     float size = dot(away, away);
-    vec3 any = abs(b.n.x) > 0.5 ? vec3(-b.n.y, b.n.x, 0.0) : vec3(0.0, -b.n.z, b.n.y);
+    /* Across z or x. Products, so that no negated copies of the normal stay in registers. */
+    float z = abs(b.n.x) > 0.5 ? 1.0 : 0.0, x = 1.0 - z;
+    vec3 any = vec3(-b.n.y * z, b.n.x * z - b.n.z * x, b.n.y * x);
     along = masu_unit(size > 1e-10 ? away : any);
     aside = cross(b.n, along);
 }

@@ -35,29 +35,22 @@ float span_margin(ray r, float begin, float end)
     return field_margin(r, 0.5 * (begin + end), 1.01 * length(vec2(0.5 * (end - begin), across)) + slack);
 }
 
-/* The data of the blocks follow the tile lists: the start of the first piece as a float, then the
- * bits of each piece. */
-uint span_words;   /* offset of the first block */
-uint span_columns; /* blocks per row */
-
-void span_locate(uvec2 size)
+/* Offset of a block's data, which follow the tile lists: the start of the first piece as a float,
+ * then the bits of each piece. Not kept: in a march it would take registers. */
+uint span_place(uvec2 block, uvec2 size)
 {
     uvec2 grid = masu_tile_grid(size);
-    span_words = uint(MASU_TILES_HEADER) + grid.x * grid.y * (1u + masu_list_stride());
-    span_columns = (size.x + 3u) / 4u;
-}
-
-uint span_place(uvec2 block)
-{
-    return span_words + (block.y * span_columns + block.x) * uint(1 + MASU_BLOCK_SPANS * MASU_SDF_BLOCK_WORDS);
+    uint first = uint(MASU_TILES_HEADER) + grid.x * grid.y * (1u + masu_list_stride());
+    uint columns = (size.x + 3u) / 4u;
+    return first + (block.y * columns + block.x) * uint(1 + MASU_BLOCK_SPANS * MASU_SDF_BLOCK_WORDS);
 }
 
 #if MASU_BLOCK_PIXELS != 4
 #error "blocks are of 4x4 pixels"
 #endif
-uint span_word(uvec2 at)
+uint span_word(uvec2 at, uvec2 size)
 {
-    return span_place(at >> 2u);
+    return span_place(at >> 2u, size);
 }
 
 #endif
@@ -71,9 +64,17 @@ uint span_word(uvec2 at)
 #if MASU_SDF_BLOCK_WORDS > 0
 #define MASU_WENT_BACK(t) span_to = (t) >= span_from ? span_to : -1.0;
 uint span_first; /* offset of the bits of the block */
-float span_pixel;
-float span_start, span_from, span_to; /* of the block; of the current piece: span_to is -1 if the
-                                       * ray went back before it */
+float span_from, span_to; /* of the current piece: span_to is -1 if the ray went back before it */
+
+float span_start()
+{
+    return uintBitsToFloat(masu_tiles[span_first - 1u]);
+}
+
+float span_pixel(uvec2 size)
+{
+    return 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
+}
 
 float span_end(vec4 ends, uint i)
 {
@@ -83,46 +84,46 @@ float span_end(vec4 ends, uint i)
 /* Outside the pieces the list of the tile is used; with all terms in a scene of one part. */
 void span_look_up(float t, uvec2 size)
 {
-    vec4 ends = span_ends(span_start, span_pixel);
+    float start = span_start();
+    vec4 ends = span_ends(start, span_pixel(size));
     uvec4 past = uvec4(greaterThan(vec4(t), ends));
     uint now = past.x + past.y + past.z + past.w;
-    bool before = MASU_SPAN_BEFORE && t < span_start;
-    span_from = before || !MASU_SPAN_BEFORE && now == 0u ? 0.0 : now == 0u ? span_start : span_end(ends, now - 1u);
-    span_to = before ? span_start : now == 4u ? 1e30 : span_end(ends, now);
+    bool before = MASU_SPAN_BEFORE && t < start;
+    span_from = before || !MASU_SPAN_BEFORE && now == 0u ? 0.0 : now == 0u ? start : span_end(ends, now - 1u);
+    span_to = before ? start : now == 4u ? 1e30 : span_end(ends, now);
     if (before || now == 4u) {
         masu_use_tile(MASU_SPAN_TILE, size);
         if (MASU_SDF_LISTED_COUNT == 1) {
             masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
         }
-        return;
+    } else {
+        uint place = span_first + now * uint(MASU_SDF_BLOCK_WORDS);
+        for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+            masu_list_bits[w] = masu_tiles[place + uint(w)];
+        }
     }
-    uint place = span_first + now * uint(MASU_SDF_BLOCK_WORDS);
-    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-        masu_list_bits[w] = masu_tiles[place + uint(w)];
-    }
+}
+
+/* For code that calls span_begin() only on some paths: values of an earlier ray would take registers. */
+void span_begin_none()
+{
+    span_first = 0u;
+    span_from = span_to = 0.0;
 }
 
 void span_begin(uvec2 at, uvec2 size, float t)
 {
-    span_first = span_word(at) + 1u;
-    span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
+    span_first = span_word(at, size) + 1u;
     /* Nearly all rays begin at the first piece. */
     span_from = 0.0;
-    span_to = span_start * (1.0 + span_pixel * 8.0);
+    span_to = span_start() * (1.0 + span_pixel(size) * 8.0);
     if (MASU_SPAN_BEFORE || !(t <= span_to)) {
         span_look_up(t, size);
-        return;
+    } else {
+        for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+            masu_list_bits[w] = masu_tiles[span_first + uint(w)];
+        }
     }
-    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-        masu_list_bits[w] = masu_tiles[span_first + uint(w)];
-    }
-}
-
-/* Called once, before the first ray. */
-void span_prepare(uvec2 size)
-{
-    span_locate(size);
-    span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
 }
 
 /* Samples advance, or MASU_WENT_BACK has reported a step back: one comparison each. */
@@ -134,7 +135,7 @@ void span_follow(float t, uvec2 size)
 }
 #else
 #define MASU_WENT_BACK(t)
-void span_prepare(uvec2 size)
+void span_begin_none()
 {
 }
 

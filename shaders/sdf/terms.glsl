@@ -60,8 +60,9 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 }
 
 #define MASU_IF_KEEPING(does) if (masu_keeping) { does; }
-#define MASU_KEEP_NONE MASU_IF_KEEPING(masu_kept = uint[](0u, 0u))
-#define MASU_KEEP_BEGIN MASU_IF_KEEPING(masu_kept_terms = 0u)
+/* Always: else earlier values take registers during an evaluation that keeps nothing. */
+#define MASU_KEEP_NONE masu_kept = uint[](0u, 0u);
+#define MASU_KEEP_BEGIN masu_kept_terms = 0u;
 #define MASU_KEEP_PART(d, f, word, bit) MASU_IF_KEEPING(masu_keep_part(d, f, word, bit))
 #define MASU_KEEP_ESTIMATE(d, part, safe) MASU_IF_KEEPING(masu_keep_estimate(d, part, safe, p))
 #define MASU_KEEP_TERMS(word, first) MASU_IF_KEEPING(masu_kept[word] |= masu_kept_terms << (first))

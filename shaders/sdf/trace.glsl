@@ -181,7 +181,7 @@ const float newton_lands = 0.15; /* pixels: a Newton step that ends this close i
 const float newton_sure = 1.2; /* if it was at most this long, pixels */
 
 /* No coordinate of a sample exceeds the camera's by more than t: a cheap bound of resolution(). */
-float coarse = 8.0 * ulp * max(abs(eye_hi.x), max(abs(eye_hi.y), abs(eye_hi.z)));
+float coarse = frame.sdf_eye_hi.w;
 
 float tolerance(ray r, float t)
 {
@@ -195,8 +195,6 @@ struct march_state {
     float before_t, before_f; /* the last accepted sample: the ray is free up to their sum */
     float limit;              /* end of the ray, or of the bracket: a sample below 0 */
     float best_t, best_f;     /* sample of least f/t; at first 2 pixels */
-    float apart;              /* threshold of march_far at distance 1: two pixel widths; 1e30 once
-                               * bracketed */
     uint steps;
     bool narrowed, done;
 };
@@ -204,8 +202,8 @@ struct march_state {
 march_state march_begin(ray r)
 {
     bool any = r.start < r.limit;
-    return march_state(any ? r.start : -1.0, r.start, 0.0, r.limit, 1.0, 2.0 * r.pixel,
-                       2.0 * r.pixel + 8.0 * ulp, 0u, false, !any);
+    return march_state(any ? r.start : -1.0, r.start, 0.0, r.limit, 1.0, 2.0 * r.pixel, 0u, false,
+                       !any);
 }
 
 /* The fallback sample is tracked only in the second half of the step budget: hardly any ray needs
@@ -293,20 +291,19 @@ void march_between(inout march_state m, ray r, float f)
     if (spent) {
         masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
     }
-    bool missed = gone || (hit && !(end < r.limit)) ||
+    bool missed = gone || (hit && !m.narrowed && !(end < m.limit)) ||
                   (spent && !(m.best_f < 2.0 * r.pixel * m.best_t));
     m.done = hit || gone || spent;
     bool narrows = meet && through;
     m.limit = narrows ? m.t : m.limit;
     m.narrowed = m.narrowed || narrows;
-    m.apart = m.narrowed ? 1e30 : m.apart;
     m.before_t = meet && !through ? m.t : m.before_t;
     m.before_f = meet ? (through ? 0.5 * m.before_f : f) : m.before_f;
     m.t = missed ? -1.0 : hit ? end : spent ? m.best_t : meet ? next : free;
     MASU_WENT_BACK(m.t)
 }
 
-/* march_between() for a ray without a sample below 0. Early exits, since most samples need only one
+/* march_between() for a ray without a sample below 0. Conditions, since most samples need only one
  * or two of the checks. */
 void march_near(inout march_state m, ray r, float f)
 {
@@ -320,39 +317,39 @@ void march_near(inout march_state m, ray r, float f)
         meet = (touched && reach <= newton_reach * pixel) || is_sure(f, pixel, reach, m.before_f);
     }
     bool spent = m.steps >= MASU_MARCH_STEPS;
-    if (!meet && !spent) {
+    if (meet || spent) {
+        if (meet) {
+            masu_note_hint(m.t, f);
+        }
+        float fall = m.before_f - f;
+        bool newton = f < newton_from * pixel && fall > 0.0;
+        float rate = (newton ? reach : 1.9 * reach) /
+                     max(newton ? fall : max(reach + fall, 0.1 * reach), 1e-30);
+        float longest = touched ? 16.0 * enough : newton_reach * pixel;
+        float next = min(m.t + (newton ? min(f * rate, longest) : f * max(rate, 1.0)), m.limit);
+        if (note_best(m)) {
+            bool better = meet && f * m.best_t < m.best_f * m.t;
+            m.best_t = better ? m.t : m.best_t;
+            m.best_f = better ? f : m.best_f;
+        }
+        bool hit = touched && meet;
+        if (hit || spent || (meet && m.t + f >= m.limit)) {
+            bool gone = hit ? !(next < m.limit) : meet && m.t + f >= m.limit;
+            if (spent && !hit && !gone) {
+                masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
+                gone = !(m.best_f < 2.0 * r.pixel * m.best_t);
+                next = m.best_t;
+            }
+            m.done = true;
+            next = gone ? -1.0 : next;
+        }
+        m.before_t = m.t;
+        m.before_f = f;
+        m.t = next;
+    } else {
         m.t = free;
         MASU_WENT_BACK(free)
-        return;
     }
-    if (meet) {
-        masu_note_hint(m.t, f);
-    }
-    float fall = m.before_f - f;
-    bool newton = f < newton_from * pixel && fall > 0.0;
-    float rate = (newton ? reach : 1.9 * reach) /
-                 max(newton ? fall : max(reach + fall, 0.1 * reach), 1e-30);
-    float longest = touched ? 16.0 * enough : newton_reach * pixel;
-    float next = min(m.t + (newton ? min(f * rate, longest) : f * max(rate, 1.0)), m.limit);
-    if (note_best(m)) {
-        bool better = meet && f * m.best_t < m.best_f * m.t;
-        m.best_t = better ? m.t : m.best_t;
-        m.best_f = better ? f : m.best_f;
-    }
-    bool hit = touched && meet;
-    if (hit || spent || (meet && m.t + f >= m.limit)) {
-        bool gone = hit ? !(next < r.limit) : meet && m.t + f >= m.limit;
-        if (spent && !hit && !gone) {
-            masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
-            gone = !(m.best_f < 2.0 * r.pixel * m.best_t);
-            next = m.best_t;
-        }
-        m.done = true;
-        next = gone ? -1.0 : next;
-    }
-    m.before_t = m.t;
-    m.before_f = f;
-    m.t = next;
 }
 
 /* At two pixel widths or more: no candidate for the fallback sample, and nothing to bracket. */
@@ -362,21 +359,24 @@ void march_far(inout march_state m, float f)
     if (m.t - f > free) {
         m.t = free;
         MASU_WENT_BACK(free)
-        return;
+    } else {
+        masu_note_hint(m.t, f);
+        float reach = m.t - m.before_t;
+        float rate = 1.9 * reach / max(max(reach + (m.before_f - f), 0.1 * reach), 1e-30);
+        m.before_t = m.t;
+        m.before_f = f;
+        m.done = m.t + f >= m.limit;
+        m.t = m.done ? -1.0 : min(m.t + f * max(rate, 1.0), m.limit);
     }
-    masu_note_hint(m.t, f);
-    float reach = m.t - m.before_t;
-    float rate = 1.9 * reach / max(max(reach + (m.before_f - f), 0.1 * reach), 1e-30);
-    m.before_t = m.t;
-    m.before_f = f;
-    m.done = m.t + f >= m.limit;
-    m.t = m.done ? -1.0 : min(m.t + f * max(rate, 1.0), m.limit);
 }
 
+/* Only for a march that is not done. */
 void march_step(inout march_state m, ray r, float f)
 {
     m.steps++;
-    if (f > m.t * m.apart + coarse && m.steps < MASU_MARCH_STEPS) {
+    m.done = false; /* known: else it takes a register while the caller evaluates the field */
+    float apart = 2.0 * r.pixel + 8.0 * ulp; /* threshold of march_far at distance 1 */
+    if (!m.narrowed && f > m.t * apart + coarse && m.steps < MASU_MARCH_STEPS) {
         march_far(m, f);
     } else if (!m.narrowed && f >= -tolerance(r, m.t)) {
         march_near(m, r, f);
@@ -401,44 +401,49 @@ float march(ray r, out uint evals)
 
 #endif
 
-/* masu_normalize(), faster for common lengths: half the operations. */
+/* masu_normalize(), faster for common lengths: half the operations. One return: with two, ANV keeps
+ * registers for the result from one turn of the caller's loop to the next. */
 vec3 unit_or(vec3 v, vec3 fallback)
 {
     float squared = dot(v, v);
-    if (squared > masu_tiny && squared < masu_huge) {
-        return v * masu_rsqrt_sure(squared);
+    bool plain = squared > masu_tiny && squared < masu_huge;
+    vec3 unit = v * masu_rsqrt_sure(plain ? squared : 1.0);
+    if (!plain) {
+        unit = masu_normalize(v, fallback);
     }
-    return masu_normalize(v, fallback);
+    return unit;
 }
 
 /* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The
  * step grows with distance (0.02 pixel; a quarter, as in the plain march, rounds every edge of a
  * city: FLIP 0.013 against 0.002) and with the coordinates (64 ulp: the least sum of truncation and
- * rounding error). A loop compiles the field once here instead of four times. `part`: the closest
- * one. */
+ * rounding error). A loop compiles the field once here instead of four times; it computes point and
+ * step each time, to keep no registers for them. `part`: the closest one. */
 vec3 normal_at(ray r, float t, out uint part)
 {
-    vec3 p = world_at(r.direction, t);
-    vec3 a = abs(p);
-    float h = max(normal_step * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
-    vec3 corner = vec3(h, -h, -h);
     vec4 f = vec4(0.0);
-#ifdef MASU_SDF_KEEP
-    masu_keeping = MASU_SDF_BLOCK_WORDS > 0 && MASU_CHOOSING;
-    masu_margin = masu_keeping ? field_margin(r, t, 3.0 * h) : 0.0;
-#endif
     MASU_LOOP for (int i = 0; i < 4; i++) {
-        f = vec4(f.yzw, masu_sdf_with(p + corner, part));
-        corner = i == 2 ? vec3(h) : corner.zxy;
+        vec3 p = world_at(r.direction, t);
+        vec3 a = abs(p);
+        float h = max(normal_step * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
 #ifdef MASU_SDF_KEEP
         /* The first sample selects the terms for the other three. */
+        masu_keeping = MASU_SDF_BLOCK_WORDS > 0 && MASU_CHOOSING && i == 0;
+        masu_margin = masu_keeping ? field_margin(r, t, 3.0 * h) : 0.0;
+#endif
+        bvec3 ahead = equal(ivec3(i), ivec3(0, 1, 2));
+        p += mix(vec3(-h), vec3(h), i == 3 ? bvec3(true) : ahead);
+        f = vec4(f.yzw, masu_sdf_with(p, part));
+#ifdef MASU_SDF_KEEP
         if (masu_keeping) {
             masu_list_bits = masu_kept;
-            masu_margin = 0.0;
-            masu_keeping = false;
         }
 #endif
     }
+#ifdef MASU_SDF_KEEP
+    masu_keeping = false;
+    masu_margin = 0.0;
+#endif
     vec3 sum = f.xyz - f.yzx + (f.w - f.zxy);
     return unit_or(sum, -r.direction);
 }

@@ -35,7 +35,8 @@ struct masu_frame_uniforms {
     /* SDF space is world space minus the anchor: zero, or a point near the camera that only moves
      * when the camera has moved by MASU_ANCHOR_GRID. */
     masu_vec4 anchor;        /* xyz; w unused */
-    masu_vec4 sdf_eye_hi;    /* xyz camera position - anchor, rounded to float; w unused */
+    masu_vec4 sdf_eye_hi;    /* xyz camera position - anchor, rounded to float; w 8 ulp of its
+                                largest component */
     masu_vec4 sdf_eye_lo;    /* xyz remainder; w unused */
     masu_vec4 sdf_min;       /* xyz lower corner of the SDF bounds, SDF space; w 1 / Lipschitz
                                 constant */

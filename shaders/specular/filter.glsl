@@ -24,6 +24,13 @@ const float masu_most_radiance = 250.0;
  * would only blur them. */
 const float masu_mirror_roughness = 0.5 / 63.0;
 
+/* Offset of the k-th of 3x3 texels, 0..8: the quotient by 3 without a division of integers. */
+ivec2 masu_ninth(int k)
+{
+    int row = k * 11 >> 5;
+    return ivec2(k - 3 * row, row) - 1;
+}
+
 vec3 masu_tamed(vec3 radiance)
 {
     return masu_sane(radiance, 0.0, masu_most_radiance);
@@ -59,10 +66,16 @@ bool masu_is_moving(vec2 moved)
     return any(greaterThan(abs(moved), vec2(0.05)));
 }
 
-uint masu_pack_age(float frames, float far)
+/* The low half of an age. */
+uint masu_pack_far(float far)
+{
+    return packHalf2x16(vec2(masu_sane(far, 0.0, 65504.0), 0.0)) & 0xFFFFu;
+}
+
+uint masu_pack_age(float frames, uint far)
 {
     uint age = uint(masu_sane(frames, 0.0, 1023.0) * 64.0 + 0.5);
-    return age << 16 | (packHalf2x16(vec2(masu_sane(far, 0.0, 65504.0), 0.0)) & 0xFFFFu);
+    return age << 16 | far;
 }
 
 float masu_age_frames(uint word)

@@ -115,14 +115,13 @@ void masu_trace_boxes(uvec4 a, uvec4 b, uvec4 c, masu_trace_ray ray, float t_min
     vec3 first = base - margin, last = base + margin;
     uvec3 low = b.xyz, high = uvec3(b.w, c.xy);
     uvec3 front = mix(high, low, ray.forward), back = mix(low, high, ray.forward);
-    ivec4 x0 = floatBitsToInt(masu_trace_bytes(front.x) * scale.x + first.x);
-    ivec4 y0 = floatBitsToInt(masu_trace_bytes(front.y) * scale.y + first.y);
-    ivec4 z0 = floatBitsToInt(masu_trace_bytes(front.z) * scale.z + first.z);
-    ivec4 x1 = floatBitsToInt(masu_trace_bytes(back.x) * scale.x + last.x);
-    ivec4 y1 = floatBitsToInt(masu_trace_bytes(back.y) * scale.y + last.y);
-    ivec4 z1 = floatBitsToInt(masu_trace_bytes(back.z) * scale.z + last.z);
-    enter = max(max(x0, y0), max(z0, ivec4(floatBitsToInt(t_min))));
-    ivec4 leave = min(min(x1, y1), min(z1, ivec4(floatBitsToInt(t_max))));
+    /* Axis by axis: all six planes of four boxes would take 24 registers. */
+    enter = max(floatBitsToInt(masu_trace_bytes(front.x) * scale.x + first.x), ivec4(floatBitsToInt(t_min)));
+    ivec4 leave = min(floatBitsToInt(masu_trace_bytes(back.x) * scale.x + last.x), ivec4(floatBitsToInt(t_max)));
+    enter = max(enter, floatBitsToInt(masu_trace_bytes(front.y) * scale.y + first.y));
+    leave = min(leave, floatBitsToInt(masu_trace_bytes(back.y) * scale.y + last.y));
+    enter = max(enter, floatBitsToInt(masu_trace_bytes(front.z) * scale.z + first.z));
+    leave = min(leave, floatBitsToInt(masu_trace_bytes(back.z) * scale.z + last.z));
     hit = lessThanEqual(enter, leave);
     types = (uvec4(a.w) >> uvec4(24u, 26u, 28u, 30u)) & 3u;
 }
@@ -237,11 +236,13 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
     uint waiting = 0u; /* pending instances of a node: packed as in masu_trace_stack */
     uint waiting_item = 0u;
     int depth = 0;
-    for (int i = 0; i < MASU_TRACE_VISITS; i++) {
+    /* Each turn of the three loops visits a node: the count of visits ends them, and no loop keeps a
+     * counter in a register. */
+    for (; visits < uint(MASU_TRACE_VISITS);) {
         /* Recomputed each time: kept, it would take registers from the mesh loop. */
         masu_trace_ray world = masu_trace_prepare(origin, direction);
-        for (int k = 0; k < MASU_TRACE_VISITS; k++) {
-            if (waiting != 0u || !top_going || visits >= uint(MASU_TRACE_VISITS)) break;
+        for (; visits < uint(MASU_TRACE_VISITS);) {
+            if (waiting != 0u || !top_going) break;
             uint at = 1u + top_node * uint(MASU_TRACE_NODE_UVEC4);
             uvec4 a = masu_trace_frame[at], b = masu_trace_frame[at + 1u];
             uvec4 c = masu_trace_frame[at + 2u];
@@ -283,10 +284,10 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
         uint node = about.x, rest = 0u;
         int bottom = depth;
         bool going = true;
-        for (int m = 0; m < MASU_TRACE_VISITS; m++) {
+        for (; going && visits < uint(MASU_TRACE_VISITS);) {
             uint items = 0u, item = 0u;
-            for (int k = 0; k < MASU_TRACE_VISITS; k++) {
-                if (items != 0u || !going || visits >= uint(MASU_TRACE_VISITS)) break;
+            for (; visits < uint(MASU_TRACE_VISITS);) {
+                if (items != 0u || !going) break;
                 uint n = 1u + node * uint(MASU_TRACE_NODE_UVEC4);
                 uvec4 a = masu_trace_static[n], b = masu_trace_static[n + 1u];
                 uvec4 c = masu_trace_static[n + 2u];
@@ -328,7 +329,6 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
                     }
                 }
             }
-            if (!going || visits >= uint(MASU_TRACE_VISITS)) break;
         }
         depth = bottom;
     }

@@ -324,9 +324,7 @@ static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan,
     return computed_for;
 }
 
-/* The pass has 54 values for each thread to keep: 576 bytes or more of scratch on Mali and the
- * Raspberry Pi, at 5.7 times the cycles of EASU a pixel on a Mali-G610 (design/15-fsr1.md). */
-static int spills_easu_twice(const VkPhysicalDeviceProperties *d) {
+int masu_few_registers(const VkPhysicalDeviceProperties *d) {
     return d->vendorID == MASU_VENDOR_ARM || d->vendorID == MASU_VENDOR_BROADCOM;
 }
 
@@ -352,7 +350,9 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     if (!result) result = choose_ray_query(desc, plan, vk, detail);
     if (!result) result = choose_half_floats(desc, vk, detail);
     if (!filters_unorm16(vk)) desc->deny.unorm16 = 1;
-    if (spills_easu_twice(&vk->properties)) desc->deny.easu_twice = 1;
+    /* The pass has 54 values for each thread to keep: 576 bytes or more of scratch on Mali and the
+     * Raspberry Pi, at 5.7 times the cycles of EASU a pixel on a Mali-G610 (design/15-fsr1.md). */
+    if (masu_few_registers(&vk->properties)) desc->deny.easu_twice = 1;
     if (desc->debug.share_rays == MASU_AUTO)
         desc->debug.share_rays = is_gpu(vk) ? MASU_ON : MASU_OFF;
     return result;

@@ -7,6 +7,9 @@
 #include "device/vk.h"
 #include "plan/plan.h"
 
+/* Mali and the Raspberry Pi, whose threads have at most 64 registers. */
+int masu_few_registers(const VkPhysicalDeviceProperties *properties);
+
 /* Resolves the MASU_AUTO fields of `desc`. `plan` is the plan of `desc` before the call; its rungs
  * are used if the host gave none. *computed_for: the GPU class whose measured rung costs were used;
  * "" if none. */

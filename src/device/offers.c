@@ -7,44 +7,42 @@
 #include <string.h>
 
 /* Extensions of Vulkan 1.1. Later versions contain some of them, but devices list them still. */
-static const struct {
-    uint32_t feature;
-    const char *name;
-} extensions[] = {
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_RAY_QUERY_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_EXT_DESCRIPTOR_INDEXING_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_SPIRV_1_4_EXTENSION_NAME},
-    {MASU_FEATURE_RAY_QUERY, VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME},
-    {MASU_FEATURE_SHADER_FLOAT16, VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME},
+static const uint32_t features_of[] = {
+    MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY,
+    MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY, MASU_FEATURE_RAY_QUERY,
+    MASU_FEATURE_SHADER_FLOAT16,
+};
+static const char *const extensions[] = {
+    VK_KHR_RAY_QUERY_EXTENSION_NAME,
+    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+    VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME,
+    VK_EXT_DESCRIPTOR_INDEXING_EXTENSION_NAME,
+    VK_KHR_SPIRV_1_4_EXTENSION_NAME,
+    VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME,
+    VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME,
 };
 #define EXTENSIONS (sizeof extensions / sizeof *extensions)
-_Static_assert(EXTENSIONS == MASU_MAX_EXTENSIONS, "MASU_MAX_EXTENSIONS");
+_Static_assert(EXTENSIONS + MASU_VK_1_0_EXTENSIONS == MASU_MAX_EXTENSIONS, "MASU_MAX_EXTENSIONS");
+_Static_assert(EXTENSIONS == sizeof features_of / sizeof *features_of, "features_of");
 
-/* The features of `wanted` whose extensions are among the first EXTENSIONS_READ of the device. */
-#define EXTENSIONS_READ 512u
-static uint32_t with_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc,
-                                uint32_t wanted) {
-    PFN_vkEnumerateDeviceExtensionProperties enumerate =
-        (PFN_vkEnumerateDeviceExtensionProperties)get_proc(vk->instance,
-                                                           "vkEnumerateDeviceExtensionProperties");
-    VkExtensionProperties list[EXTENSIONS_READ];
-    uint32_t n = EXTENSIONS_READ;
-    VkResult r = enumerate ? enumerate(vk->physical, NULL, &n, list) : VK_NOT_READY;
-    if (r != VK_SUCCESS && r != VK_INCOMPLETE) n = 0;
-    for (uint32_t e = 0; e < EXTENSIONS; e++) {
-        uint32_t i = 0;
-        while (i < n && strcmp(list[i].extensionName, extensions[e].name)) i++;
-        if (i == n) wanted &= ~extensions[e].feature;
-    }
-    return wanted;
+static int is_1_0(const masu_vk *vk) { return vk->properties.apiVersion < VK_API_VERSION_1_1; }
+
+static uint32_t core_features(const VkPhysicalDeviceFeatures *f) {
+    return (f->textureCompressionBC ? MASU_FEATURE_TEXTURE_COMPRESSION_BC : 0u) |
+           (f->samplerAnisotropy ? MASU_FEATURE_SAMPLER_ANISOTROPY : 0u);
 }
 
 /* Drivers leave structures that they do not support unchanged (specification, "Valid Usage for
  * Structure Pointer Chains"), so they remain 0. */
 uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc) {
+    if (is_1_0(vk)) {
+        PFN_vkGetPhysicalDeviceFeatures get_core = (PFN_vkGetPhysicalDeviceFeatures)get_proc(
+            vk->instance, "vkGetPhysicalDeviceFeatures");
+        VkPhysicalDeviceFeatures core = {0};
+        if (get_core) get_core(vk->physical, &core);
+        return core_features(&core);
+    }
     PFN_vkGetPhysicalDeviceFeatures2 get = (PFN_vkGetPhysicalDeviceFeatures2)get_proc(
         vk->instance, "vkGetPhysicalDeviceFeatures2");
     if (!get) return 0;
@@ -60,20 +58,22 @@ uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc
     VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                      .pNext = &rays};
     get(vk->physical, &all);
-    uint32_t has = 0;
-    if (all.features.textureCompressionBC) has |= MASU_FEATURE_TEXTURE_COMPRESSION_BC;
-    if (all.features.samplerAnisotropy) has |= MASU_FEATURE_SAMPLER_ANISOTROPY;
+    uint32_t has = core_features(&all.features);
+    uint32_t found = masu_vk_find_extensions(vk, get_proc, extensions, EXTENSIONS);
     if (rays.rayQuery && structure.accelerationStructure && address.bufferDeviceAddress)
         has |= MASU_FEATURE_RAY_QUERY;
     if (half.shaderFloat16) has |= MASU_FEATURE_SHADER_FLOAT16;
-    return with_extensions(vk, get_proc, has);
+    for (uint32_t e = 0; e < EXTENSIONS; e++)
+        if (!(found >> e & 1u)) has &= ~features_of[e];
+    return has;
 }
 
-void masu_list_extensions(masu_device_info *out) {
+void masu_list_extensions(const masu_vk *vk, masu_device_info *out) {
     out->extension_count = 0;
+    for (uint32_t e = 0; e < MASU_VK_1_0_EXTENSIONS && is_1_0(vk); e++)
+        out->extensions[out->extension_count++] = masu_vk_1_0_extensions[e];
     for (uint32_t e = 0; e < EXTENSIONS; e++) {
-        if (out->used & extensions[e].feature)
-            out->extensions[out->extension_count++] = extensions[e].name;
+        if (out->used & features_of[e]) out->extensions[out->extension_count++] = extensions[e];
     }
 }
 

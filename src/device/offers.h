@@ -9,8 +9,8 @@
 /* MASU_FEATURE_*: those that the device supports with all their extensions. `vk` after
  * masu_vk_load_physical. */
 uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_instance_proc_addr);
-/* Sets extensions and extension_count of `out` to what `out->used` needs. */
-void masu_list_extensions(masu_device_info *out);
+/* Sets extensions and extension_count of `out` to what `out->used` and Vulkan 1.0 need. */
+void masu_list_extensions(const masu_vk *vk, masu_device_info *out);
 
 void masu_report_offers(const masu_device *m); /* cannot fail */
 

@@ -2,6 +2,7 @@
  * the pass table. A shader module exists only while its pipeline is created. */
 #include "device/pipelines.h"
 
+#include "device/capabilities.h"
 #include "device/pool.h"
 #include "device/shaders.h"
 #include "plan/buffer_plan.h"
@@ -58,7 +59,8 @@ static uint64_t now(const masu_device *m) {
  *                                              anisotropy)
  *   22  orthographic cameras: few bits of depth are kept as those of 1 - depth
  *   23  materials may show live textures
- *   24  MASU_DRAWS_* of materials.h           25  frames change the environment */
+ *   24  MASU_DRAWS_* of materials.h           25  frames change the environment
+ *   26  few registers (masu_few_registers) */
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[MASU_SPECIAL_COUNT]) {
@@ -68,7 +70,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
         ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
         ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20),
-        ENTRY(21), ENTRY(22), ENTRY(23), ENTRY(24), ENTRY(25)};
+        ENTRY(21), ENTRY(22), ENTRY(23), ENTRY(24), ENTRY(25), ENTRY(26)};
 #undef ENTRY
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
@@ -106,6 +108,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[24] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
                     (scene->depth_biases ? MASU_DRAWS_BIASES : 0u);
     constants[25] = m->plan->desc.live_environment != 0;
+    constants[26] = (VkBool32)masu_few_registers(&m->vk.properties);
     return (VkSpecializationInfo){MASU_SPECIAL_COUNT, entries,
                                   MASU_SPECIAL_COUNT * sizeof *constants, constants};
 }

@@ -88,13 +88,45 @@ static masu_result check_sizes(const masu_desc *desc, const masu_vk *vk, masu_de
     return MASU_OK;
 }
 
+/* SPIR-V with storage buffers; format features for transfers; image views with less usage than
+ * their image. */
+const char *const masu_vk_1_0_extensions[MASU_VK_1_0_EXTENSIONS] = {
+    VK_KHR_STORAGE_BUFFER_STORAGE_CLASS_EXTENSION_NAME, VK_KHR_MAINTENANCE1_EXTENSION_NAME,
+    VK_KHR_MAINTENANCE2_EXTENSION_NAME};
+
+#define EXTENSIONS_READ 512u
+uint32_t masu_vk_find_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc,
+                                 const char *const *names, uint32_t count) {
+    PFN_vkEnumerateDeviceExtensionProperties enumerate =
+        (PFN_vkEnumerateDeviceExtensionProperties)get_proc(vk->instance,
+                                                           "vkEnumerateDeviceExtensionProperties");
+    VkExtensionProperties list[EXTENSIONS_READ];
+    uint32_t n = EXTENSIONS_READ, found = 0;
+    VkResult r = enumerate ? enumerate(vk->physical, NULL, &n, list) : VK_NOT_READY;
+    if (r != VK_SUCCESS && r != VK_INCOMPLETE) n = 0;
+    for (uint32_t e = 0; e < count; e++) {
+        for (uint32_t i = 0; i < n; i++)
+            found |= (uint32_t)!strcmp(list[i].extensionName, names[e]) << e;
+    }
+    return found;
+}
+
+/* Name of an extension that a Vulkan 1.0 device lacks; NULL: none. */
+static const char *missing_extension(const masu_desc *desc, const masu_vk *vk) {
+    if (vk->properties.apiVersion >= VK_API_VERSION_1_1) return NULL;
+    uint32_t found = masu_vk_find_extensions(vk, desc->vulkan.get_instance_proc_addr,
+                                             masu_vk_1_0_extensions, MASU_VK_1_0_EXTENSIONS);
+    for (uint32_t e = 0; e < MASU_VK_1_0_EXTENSIONS; e++)
+        if (!(found >> e & 1u)) return masu_vk_1_0_extensions[e];
+    return NULL;
+}
+
 static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
-    if (vk->properties.apiVersion < VK_API_VERSION_1_1) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "Vulkan 1.1", VK_API_VERSION_1_1,
-                         vk->properties.apiVersion,
-                         "device '%s' offers Vulkan %u.%u, needed is 1.1",
-                         vk->properties.deviceName, VK_VERSION_MAJOR(vk->properties.apiVersion),
-                         VK_VERSION_MINOR(vk->properties.apiVersion));
+    const char *missing = missing_extension(desc, vk);
+    if (missing) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, missing, 1, 0,
+                         "device '%s' with Vulkan 1.0 lacks the extension %s",
+                         vk->properties.deviceName, missing);
     }
     VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     if ((vk->queue_family.queueFlags & wanted) != wanted) {

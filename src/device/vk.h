@@ -116,6 +116,14 @@ typedef struct masu_vk {
     VkPhysicalDeviceAccelerationStructurePropertiesKHR rays;
 } masu_vk;
 
+/* Extensions that a Vulkan 1.0 device needs: parts of Vulkan 1.1. */
+#define MASU_VK_1_0_EXTENSIONS 3u
+extern const char *const masu_vk_1_0_extensions[MASU_VK_1_0_EXTENSIONS];
+
+/* Bit e is set if names[e] is among the first 512 extensions of the device; count <= 32. */
+uint32_t masu_vk_find_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc,
+                                 const char *const *names, uint32_t count);
+
 /* Loads the functions of the instance and checks the device floor: API version, queue family,
  * formats, limits. Needs no device. */
 masu_result masu_vk_load_physical(const masu_desc *desc, masu_vk *vk, masu_detail *detail);

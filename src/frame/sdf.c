@@ -44,6 +44,9 @@ static void set_origin(const masu_sdf *sdf, masu_frame_data *f) {
         u->sdf_low[i] = (float)((double)sdf->bounds[0][i] - f->eye[i]);
         u->sdf_high[i] = (float)((double)sdf->bounds[1][i] - f->eye[i]);
     }
+    float largest = 0.0f;
+    for (uint32_t i = 0; i < 3; i++) largest = fmaxf(largest, fabsf(u->sdf_eye_hi[i]));
+    u->sdf_eye_hi[3] = largest * 0x1p-20f;
     u->sdf_min[3] = sdf->bounds[0][3];
     u->sdf_max[3] = sdf->bounds[1][3];
 }

@@ -23,8 +23,8 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 19u
-/* layout of version 19: 873282246 (kinds and elements; tests/scripts/scene_forms.sh) */
+#define MASU_BLOB_VERSION 20u
+/* layout of version 20: 873282246 (kinds and elements; tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 /* values per SDF primitive, first in SLOTS: sphere, slope, form, first argument, material */

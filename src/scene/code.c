@@ -8,6 +8,8 @@
 
 /* Numbers from the SPIR-V specification. */
 enum {
+    OP_SOURCE_EXTENSION = 4,
+    OP_EXTENSION = 10,
     OP_EXT_INST_IMPORT = 11,
     OP_MEMORY_MODEL = 14,
     OP_ENTRY_POINT = 15,
@@ -34,8 +36,7 @@ enum {
     OP_BRANCH = 249,
     OP_BRANCH_CONDITIONAL = 250,
     OP_SWITCH = 251,
-    OP_UNREACHABLE = 255,
-    OP_MODULE_PROCESSED = 330
+    OP_UNREACHABLE = 255
 };
 
 enum {
@@ -53,6 +54,7 @@ enum { MODE_LOCAL_SIZE = 17 };
  * instruction. */
 enum {
     RANK_CAPABILITY,
+    RANK_EXTENSION,
     RANK_IMPORT,
     RANK_MODEL,
     RANK_ENTRY,
@@ -83,6 +85,8 @@ typedef struct form {
 
 static const form forms[] = {
     {1, 1, RANK_GLOBAL, "tr"}, /* in functions too, as a variable */
+    {OP_SOURCE_EXTENSION, OP_SOURCE_EXTENSION, RANK_DEBUG, "S"},
+    {OP_EXTENSION, OP_EXTENSION, RANK_EXTENSION, "S"},
     {OP_EXT_INST_IMPORT, OP_EXT_INST_IMPORT, RANK_IMPORT, "rS"},
     {12, 12, RANK_FUNCTION, "trin[i]"},
     {OP_MEMORY_MODEL, OP_MEMORY_MODEL, RANK_MODEL, "nn"},
@@ -180,7 +184,6 @@ static const form forms[] = {
     {252, 253, RANK_FUNCTION, ""},
     {254, 254, RANK_FUNCTION, "i"},
     {OP_UNREACHABLE, OP_UNREACHABLE, RANK_FUNCTION, ""},
-    {OP_MODULE_PROCESSED, OP_MODULE_PROCESSED, RANK_DEBUG, "S"},
 };
 
 static const form *form_of(uint32_t op) {
@@ -205,7 +208,7 @@ typedef struct walk {
     uint32_t bound;
     masu_module *out;
     uint32_t rank, entries, functions, local_sizes, push_type, workgroup_size, entry;
-    int in_function, in_block, merging, blocks, entry_found;
+    int in_function, in_block, merging, blocks, entry_found, has_storage_class;
     uint8_t ids[MASU_MODULE_IDS_MAX / 4];
 } walk;
 
@@ -315,6 +318,8 @@ static const char *note_variable(walk *w, const uint32_t *word) {
         if (w->push_type) return "there are two blocks of push constants";
         w->push_type = word[1];
     }
+    if (storage == CLASS_STORAGE && !w->has_storage_class)
+        return "storage buffers need SPV_KHR_storage_buffer_storage_class";
     if (!bound) return k < o->bound_count ? "a variable has a binding, but is no resource" : NULL;
     if (k == o->bound_count || o->bound[k].set == UINT32_MAX || o->bound[k].binding == UINT32_MAX)
         return "a resource has no set or no binding";
@@ -339,6 +344,11 @@ static const char *note(walk *w, const uint32_t *word, uint32_t length) {
     switch (word[0] & 0xFFFFu) {
     case OP_CAPABILITY:
         return capability_ok(word[1]) ? NULL : "a capability is asked for that no pass has";
+    case OP_EXTENSION: {
+        static const char known[40] = "SPV_KHR_storage_buffer_storage_class";
+        w->has_storage_class = length == 11 && memcmp(word + 1, known, sizeof known) == 0;
+        return w->has_storage_class ? NULL : "an extension is asked for that no pass has";
+    }
     case OP_EXT_INST_IMPORT: {
         static const char set[16] = "GLSL.std.450";
         return length == 6 && memcmp(word + 2, set, sizeof set) == 0
@@ -359,7 +369,7 @@ static const char *note(walk *w, const uint32_t *word, uint32_t length) {
     case OP_TYPE_FLOAT: return word[2] == 32 ? NULL : "numbers are not of 32 bits";
     case OP_FUNCTION: w->entry_found |= word[2] == w->entry; return NULL;
     case OP_VARIABLE: return w->in_function ? NULL : note_variable(w, word);
-    case OP_MODULE_PROCESSED:
+    case OP_SOURCE_EXTENSION:
         if (!w->out->record) w->out->record = word, w->out->record_words = length;
         return NULL;
     default: return NULL;
@@ -519,8 +529,7 @@ const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module 
     if (count < HEADER || count > MASU_MODULE_WORDS_MAX || words[0] != MAGIC)
         return "is missing or is no SPIR-V";
     *at = 1;
-    if (words[1] < 0x00010000u || words[1] > 0x00010300u || words[1] & 0xFF0000FFu)
-        return "is of no version from 1.0 to 1.3";
+    if (words[1] != 0x00010000u) return "is not SPIR-V of version 1.0";
     *at = 3;
     if (!words[3] || words[3] > MASU_MODULE_IDS_MAX) return "has no ids, or more than 65,536";
     *at = 4;

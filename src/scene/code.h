@@ -18,7 +18,7 @@
 #define MASU_MODULE_WORDS_MAX ((uint64_t)16 << 20)
 #define MASU_MODULE_IDS_MAX 65536u
 /* Specialisation constants that a module may declare: 0 .. count - 1 (src/device/pipelines.c). */
-#define MASU_SPECIAL_COUNT 26u
+#define MASU_SPECIAL_COUNT 27u
 #define MASU_MODULE_BOUND_MAX 32u /* resources of a module; also its other interface variables */
 
 typedef enum masu_module_class {
@@ -50,7 +50,7 @@ const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module 
 
 /* ---- The record: the counts that a module of a blob was compiled for ------------------------- */
 
-/* masu-bake writes the record into each module as the string of an OpModuleProcessed, which drivers
+/* masu-bake writes the record into each module as the string of an OpSourceExtension, which drivers
  * ignore. masu_scene_bind generates it from the counts of the blob and compares. */
 typedef struct masu_module_counts {
     uint32_t kind; /* section kind */
@@ -62,7 +62,7 @@ typedef struct masu_module_counts {
 void masu_module_record(const masu_module_counts *counts, char text[MASU_MODULE_RECORD_BYTES]);
 /* The instruction: opcode and length, then the string. */
 #define MASU_MODULE_RECORD_WORDS (1u + MASU_MODULE_RECORD_BYTES / 4u)
-#define MASU_MODULE_RECORD_FIRST (MASU_MODULE_RECORD_WORDS << 16 | 330u)
+#define MASU_MODULE_RECORD_FIRST (MASU_MODULE_RECORD_WORDS << 16 | 4u)
 /* Index at which the record is inserted into a well-formed module. */
 uint64_t masu_module_record_place(const uint32_t *words, uint64_t count);
 

@@ -8,7 +8,7 @@
 #include "expect.h"
 
 static FILE *in_file_terminal; /* where standard error went */
-static char in_file_said[4096], in_file_folder[] = "/tmp/masu-fuzz-XXXXXX";
+static char in_file_said[4096], in_file_folder[32];
 
 static inline void in_file_remove(void) {
     char command[64];
@@ -21,6 +21,9 @@ static inline const char *in_file(const char *name, const uint8_t *data, size_t 
                                   char out[64]) {
     if (!in_file_terminal) {
         in_file_terminal = stderr;
+        /* In memory, where there is such a folder: some files are synced with their disk. */
+        snprintf(in_file_folder, sizeof in_file_folder, "%s/masu-fuzz-XXXXXX",
+                 access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
         EXPECT(mkdtemp(in_file_folder));
         EXPECT(!atexit(in_file_remove));
     }

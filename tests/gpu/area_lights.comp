@@ -10,6 +10,7 @@
 
 /* The declarations of a frame and of light/shade.glsl that lights.glsl needs. */
 #define MASU_SHADE_GLSL
+const bool masu_few_registers = false;
 struct test_frame {
     vec4 forward;
 };

@@ -16,6 +16,6 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i < uint(points[0].w)) {
         vec3 from = points[2u * i].xyz - probe_grid.origin.xyz;
-        points[2u * i + 1u] = masu_probe_light(from, points[2u * i + 1u].xyz);
+        points[2u * i + 1u] = masu_probe_light(from, masu_sane(points[2u * i + 1u].xyz, -1.0, 1.0));
     }
 }

@@ -93,6 +93,41 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     assert_false(is_in_scratch("x.png"));
 }
 
+/* A row in order of names for each folder with results; other folders and files are left out. */
+static void an_index_links_the_reports_of_a_folder(void **state) {
+    (void)state;
+    static const char *const files[] = {"ladder.json", "results.csv"};
+    char to[2048];
+    assert_int_equal(cli_run("bench --index %s/none", scratch), 1);
+    cli_complained("found no folder with ladder.json and results.csv");
+    assert_int_equal(shell("mkdir -p %s/all/half %s/all/b %s/all/a", scratch, scratch, scratch), 0);
+    assert_int_equal(cli_run("bench --index %s/all", scratch), 1);
+    cli_complained("/all: found no folder");
+    assert_false(is_in_scratch("all/index.html"));
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(shell("cp docs/report/engine/%s %s/all/b", files[i], scratch), 0);
+        assert_int_equal(shell("cp docs/report/mirrors/%s %s/all/a", files[i], scratch), 0);
+    }
+    assert_int_equal(shell("cp docs/report/engine/ladder.json %s/all/half", scratch), 0);
+    assert_int_equal(cli_run("bench --index %s/all", scratch), 0);
+    assert_string_equal(cli_err, "");
+    cli_said("/all/index.html: 2 scenes\n");
+    char *page = read_file(in_scratch("all/index.html"), NULL);
+    const char *a = strstr(page, "<a href=\"./a/ladder.json\">a</a>");
+    const char *b = strstr(page, "<a href=\"./b/ladder.json\">b</a>");
+    assert_true(a && b && a < b && !strstr(page, "half"));
+    free(page);
+    assert_int_equal(cli_run("bench --index %s/all --quiet", scratch), 0);
+    assert_string_equal(cli_out, "");
+    /* One scene that cannot be read: no page is better than one without it. */
+    assert_int_equal(
+        shell("echo '[' > %s/all/b/ladder.json && rm %s/all/index.html", scratch, scratch), 0);
+    assert_int_equal(cli_run("bench --index %s/all", scratch), 1);
+    snprintf(to, sizeof to, "%s/all/b/ladder.json", scratch);
+    cli_complained(to);
+    assert_false(is_in_scratch("all/index.html"));
+}
+
 static void bad_scene_files_are_named_with_their_fault(void **state) {
     (void)state;
     FILE *f = fopen(scene_path("test_both"), "rb");
@@ -645,6 +680,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_and_version_are_there_for_every_command),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
+        cmocka_unit_test(an_index_links_the_reports_of_a_folder),
         cmocka_unit_test(bad_scene_files_are_named_with_their_fault),
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing),
         cmocka_unit_test(an_unknown_device_lists_those_that_are_there),

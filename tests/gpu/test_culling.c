@@ -247,12 +247,93 @@ static void shadows_are_the_same_without_culling(void **state) {
     assert_true(slow[NEITHER] > 0 && 4 * slow[NEITHER] * frames < 3 * every[NEITHER] * slow_frames);
 }
 
+/* A plate is all that the camera sees. A box above it, out of view, passes over it: the texels of
+ * the shadow map are so large that the box's shadow reaches the plate through the filter alone,
+ * from up to two texels away. */
+static void a_shadow_that_only_the_filter_reaches_is_drawn(void **state) {
+    (void)state;
+    enum { STEPS = 48 };
+    static const char scene[] =
+        "{\"models\": [{\"mesh\": {\"box\": {\"size\": [0.5, 0.1, 0.5]}}},"
+        "{\"name\": \"moving\", \"mesh\": {\"box\": {\"size\": [0.5, 0.2, 0.5]}}, "
+        "\"occluder\": true, \"translate\": [0, 2, 0]}],"
+        "\"camera\": {\"fov_y\": 14, \"keys\": [{\"position\": [0, 1, 3], \"target\": [0, 0, 0]}]},"
+        "\"sun\": {\"azimuth\": 20, \"elevation\": 80, \"shadows\": {\"cascades\": 1, "
+        "\"resolution\": 32, \"distance\": 4}}, \"reflections\": false}";
+    uint32_t left_out = 0, dark = 0;
+    masu_session s;
+    bake_scene("plate", scene);
+    masu_session_desc d = test_desc(NULL, W, H);
+    d.scene_path = baked_scene("plate");
+    d.desc.rung_count = WAYS;
+    d.desc.rungs[OCCLUSION].frustum = d.desc.rungs[NEITHER].frustum = MASU_OFF;
+    d.desc.rungs[FRUSTUM].occlusion = d.desc.rungs[NEITHER].occlusion = MASU_OFF;
+    open_session(&s, &d);
+    for (uint32_t n = 0; n < STEPS; n++) {
+        move_instance(&s, "moving", 2.4f * ((float)n / STEPS - 0.5f), 2, 0.02f * (float)(n % 5), 1);
+        for (uint32_t way = 0; way < WAYS; way += NEITHER) {
+            masu_frame_desc f = {.rung = way, .cut = 1};
+            masu_commands commands;
+            draw(&s, &f, &commands, pixels[way]);
+            masu_stats_info stats = stats_of(&s, commands.slot);
+            left_out += way == BOTH && stats.views[1].visible_triangles < 24;
+        }
+        if (max_difference(pixels[BOTH], pixels[NEITHER], BYTES)) fail_msg("step %u differs", n);
+        if (n == 0) memcpy(pixels[FRUSTUM], pixels[BOTH], BYTES);
+        dark += max_difference(pixels[FRUSTUM], pixels[BOTH], BYTES) > 8;
+    }
+    close_session(&s);
+    print_message("box without a shadow in %u of %u steps, plate shaded in %u\n", left_out, STEPS,
+                  dark);
+    assert_true(left_out > STEPS / 8 && dark > STEPS / 8 && left_out + dark <= STEPS);
+}
+
+/* A slow cascade is rendered again when the next rung has other LODs: its map is that of a renderer
+ * which has only had this rung. */
+static void a_slow_cascade_has_the_lods_of_its_rung(void **state) {
+    (void)state;
+    enum { FINE, COARSE, RESOLUTION = 64, BYTES_OF_MAP = RESOLUTION * RESOLUTION * 4 };
+    static const char scene[] =
+        "{\"lods\": 3, \"models\": [{\"mesh\": {\"plane\": {\"size_x\": 6, \"size_z\": 6}}},"
+        "{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 4}}, \"translate\": [0, 1.5, "
+        "0]}],"
+        "\"camera\": {\"keys\": [{\"position\": [0, 3, 6], \"target\": [0, 0.5, 0]}]},"
+        "\"sun\": {\"azimuth\": 20, \"elevation\": 50, \"shadows\": {\"cascades\": 1, "
+        "\"resolution\": 64, \"distance\": 20}}, \"reflections\": false}";
+    static uint8_t map[3][BYTES_OF_MAP];
+    bake_scene("round", scene);
+    masu_session_desc d = test_desc(NULL, W, H);
+    d.scene_path = baked_scene("round");
+    d.desc.rung_count = 2;
+    d.desc.readback = MASU_READBACK_SHADOW_MAP;
+    d.desc.rungs[FINE].lod_error = -1;
+    d.desc.rungs[COARSE].lod_error = 1e9f;
+    d.desc.rungs[FINE].shadow_refresh[0] = d.desc.rungs[COARSE].shadow_refresh[0] = 64;
+    for (uint32_t alone = 0; alone < 2; alone++) {
+        masu_session s;
+        open_session(&s, &d);
+        for (uint32_t n = 0; n < 3; n++) {
+            masu_commands commands;
+            masu_frame_desc f = {.rung = alone || n == 2 ? COARSE : FINE, .cut = n == 0};
+            draw(&s, &f, &commands, NULL);
+            if (!alone && n == 0) continue;
+            memcpy(map[alone ? 2 : n - 1], read_image(&s, commands.slot, MASU_READBACK_SHADOW_MAP),
+                   BYTES_OF_MAP);
+        }
+        close_session(&s);
+    }
+    assert_true(memcmp(map[0], map[1], BYTES_OF_MAP)); /* the LODs differ in their shadows */
+    assert_memory_equal(map[1], map[2], BYTES_OF_MAP);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_picture_is_the_same_without_culling),
         cmocka_unit_test(what_moves_is_culled_where_it_is),
         cmocka_unit_test(velocities_are_the_same_without_culling),
         cmocka_unit_test(shadows_are_the_same_without_culling),
+        cmocka_unit_test(a_shadow_that_only_the_filter_reaches_is_drawn),
+        cmocka_unit_test(a_slow_cascade_has_the_lods_of_its_rung),
     };
     return cmocka_run_group_tests_name("culling", tests, make_scratch, remove_scratch);
 }

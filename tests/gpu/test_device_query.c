@@ -152,6 +152,30 @@ static void expect_missing(const masu_desc *d, masu_result result, const char *w
     assert_memory_equal(&info, &was, sizeof info);
 }
 
+/* A Vulkan 1.0 device: the extensions that it needs are listed, and no feature of later versions. */
+static void vulkan_1_0_needs_three_extensions(void **state) {
+    (void)state;
+    masu_device_info info;
+    open_scene("test_reflections");
+    masu_desc d = before_device();
+    d.scene = NULL;
+    wrap.api_version = VK_API_VERSION_1_0;
+    assert_int_equal(masu_device_query(&d, &info, NULL), MASU_OK);
+    assert_int_equal(info.supported & (RAYS | HALVES), 0);
+    assert_int_equal(info.extension_count, 3);
+    assert_true(names(&info, VK_KHR_STORAGE_BUFFER_STORAGE_CLASS_EXTENSION_NAME));
+    assert_true(names(&info, VK_KHR_MAINTENANCE1_EXTENSION_NAME));
+    assert_true(names(&info, VK_KHR_MAINTENANCE2_EXTENSION_NAME));
+    wrap.no_extensions = true;
+    expect_missing(&d, MASU_ERROR_DEVICE, VK_KHR_STORAGE_BUFFER_STORAGE_CLASS_EXTENSION_NAME, 1,
+                   "with Vulkan 1.0 lacks the extension");
+    wrap.api_version = VK_API_VERSION_1_1;
+    assert_int_equal(masu_device_query(&d, &info, NULL), MASU_OK);
+    assert_int_equal(info.extension_count, 0);
+    wrap_reset();
+    close_session(&s);
+}
+
 static void what_is_required_and_missing_is_named(void **state) {
     (void)state;
     open_scene("test_reflections");
@@ -160,7 +184,9 @@ static void what_is_required_and_missing_is_named(void **state) {
         if (!scene) d.scene = NULL;
         wrap_reset();
         wrap.api_version = VK_API_VERSION_1_0;
-        expect_missing(&d, MASU_ERROR_DEVICE, "Vulkan 1.1", 1, "offers Vulkan 1.0, needed is 1.1");
+        wrap.no_extensions = true;
+        expect_missing(&d, MASU_ERROR_DEVICE, "VK_KHR_storage_buffer_storage_class", 1,
+                       "with Vulkan 1.0 lacks the extension");
         wrap_reset();
         wrap.lacking_format = VK_FORMAT_D32_SFLOAT;
         expect_missing(&d, MASU_ERROR_DEVICE, "VK_FORMAT_D32_SFLOAT", 1, "lacks features");
@@ -199,6 +225,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_a_scene_it_is_what_the_device_has),
         cmocka_unit_test(with_a_scene_it_is_what_init_uses),
+        cmocka_unit_test(vulkan_1_0_needs_three_extensions),
         cmocka_unit_test(what_is_required_and_missing_is_named),
     };
     return cmocka_run_group_tests_name("device_query", tests, NULL, NULL);

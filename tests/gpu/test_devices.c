@@ -222,6 +222,34 @@ static void each_class_runs_or_lacks_a_named_feature(void **state) {
     for (uint32_t c = 0; c < CLASSES; c++) run_class(c);
 }
 
+/* Calls and SPIR-V of Vulkan 1.0 alone, which the validation layer checks: the same image. */
+static void a_vulkan_1_0_device_draws_the_same(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"test_both", "test_reserve", "test_texture_mask"};
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        uint8_t *images[2];
+        for (int old = 0; old < 2; old++) {
+            masu_session s;
+            masu_session_desc d = test_desc(scenes[k], W, H);
+            wrap_reset();
+            wrap.row = old ? masu_device_row_of("g52") : masu_device_row_of("g610");
+            d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+            d.host.vulkan_1_0 = old;
+            d.desc.rung_count = 1;
+            open_session(&s, &d);
+            images[old] = malloc((size_t)W * H * 4);
+            assert_non_null(images[old]);
+            draw_rung(&s, 0, images[old]);
+            close_session(&s);
+        }
+        uint32_t differs = max_difference(images[0], images[1], (size_t)W * H * 4);
+        if (differs) fail_msg("%s differs by %u", scenes[k], differs);
+        free(images[0]);
+        free(images[1]);
+    }
+    wrap_reset();
+}
+
 /* A limit below the minimum of the specification: enough, and one less, which is rejected by name. */
 static void a_device_below_a_minimum_is_rejected_by_name(void **state) {
     (void)state;
@@ -333,6 +361,7 @@ static void the_page_has_the_tables(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_class_runs_or_lacks_a_named_feature),
+        cmocka_unit_test(a_vulkan_1_0_device_draws_the_same),
         cmocka_unit_test(a_device_below_a_minimum_is_rejected_by_name),
         cmocka_unit_test(the_page_has_the_tables),
     };

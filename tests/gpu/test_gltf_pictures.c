@@ -345,6 +345,31 @@ static void a_coat_is_smooth_unless_it_names_a_picture(void **state) {
     compare(mapped("leaning.png", COATED COAT(",\"clearcoatNormalTexture\":{\"index\":0,\"texCoord\":1}")), ahead, &f, 1, 0.01);
 }
 
+/* The grain's direction is kept to 1/128 of half a turn: each of these steps moves the light. */
+static void grain_turns_by_its_smallest_step(void **state) {
+    (void)state;
+    enum { STEPS = 4, HALVES = 4 * SIDE * SIDE };
+    static uint16_t seen[STEPS][HALVES];
+    static const uint8_t white[4][3] = {{255, 255, 255}, {255, 255, 255}, {255, 255, 255}, {255, 255, 255}};
+    write_squares("white.png", white);
+    for (int i = 0; i < STEPS; i++) {
+        char material[512];
+        masu_session s;
+        masu_view view;
+        snprintf(material, sizeof material,
+                 "\"pbrMetallicRoughness\":{\"metallicFactor\":1,\"roughnessFactor\":0.4,"
+                 "\"baseColorTexture\":{\"index\":0,\"texCoord\":1}},"
+                 "\"extensions\":{\"KHR_materials_anisotropy\":{\"anisotropyStrength\":1,"
+                 "\"anisotropyRotation\":%.9g}}",
+                 (40 + i) * 3.14159265358979 / 128);
+        memcpy(seen[i], photograph(&s, mapped("white.png", material), in_the_glare, &view), sizeof seen[i]);
+        close_session(&s);
+        int changed = 0;
+        for (int k = 0; i && k < HALVES; k++) changed += seen[i][k] != seen[i - 1][k];
+        assert_true(!i || changed > SIDE * SIDE / 8);
+    }
+}
+
 static void coats_have_maps(void **state) {
     (void)state;
     static const uint8_t squares[4][3] = {{255, 255, 9}, {0, 255, 9}, {204, 128, 9}, {102, 255, 9}};
@@ -802,6 +827,7 @@ int main(void) {
         cmocka_unit_test(what_is_unlit_sends_its_colour),
         cmocka_unit_test(weak_maps_of_emission_shine),
         cmocka_unit_test(a_coat_is_smooth_unless_it_names_a_picture),
+        cmocka_unit_test(grain_turns_by_its_smallest_step),
         cmocka_unit_test(coats_have_maps),
         cmocka_unit_test(glass_colours_what_is_behind),
         cmocka_unit_test(volumes_refract_what_is_behind),

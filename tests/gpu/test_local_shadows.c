@@ -653,6 +653,68 @@ static void nothing_is_planned_where_no_light_casts(void **state) {
     }
 }
 
+/* ---- GPUs with few registers ----------------------------------------------------------------- */
+
+static PFN_vkGetInstanceProcAddr real_proc;
+
+static VKAPI_ATTR void VKAPI_CALL pretend_mali(VkPhysicalDevice physical,
+                                               VkPhysicalDeviceProperties *out) {
+    vkGetPhysicalDeviceProperties(physical, out);
+    out->vendorID = 0x13B5;
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL mali_proc(VkInstance instance, const char *name) {
+    if (!strcmp(name, "vkGetPhysicalDeviceProperties")) return (PFN_vkVoidFunction)pretend_mali;
+    return real_proc(instance, name);
+}
+
+/* Their shaders load and unpack values again, some as half floats (masu_few_registers). */
+static void few_registers_change_only_rounding(void **state) {
+    (void)state;
+    enum { WIDTH = 96, HEIGHT = 60, VALUES = WIDTH * HEIGHT * 4 };
+    static uint16_t first[VALUES];
+    masu_camera view = look(4.5, 4.5, 6, -4, -4.2, -6, 1.1);
+    begin_scene(30);
+    add_room();
+    add_lights("{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, "
+               "\"range\": 14}, {\"type\": \"rectangle\", \"position\": [1, 3, 1], "
+               "\"half_u\": [0.5, 0, 0], \"half_v\": [0, 0, 0.25], \"intensity\": 4, "
+               "\"range\": 14}");
+    bake_scene("lamp_registers", json);
+    uint32_t bright = 0, different = 0;
+    double worst = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        lamps l = {.width = WIDTH, .height = HEIGHT};
+        char error[256];
+        masu_session_desc d = test_desc(NULL, WIDTH, HEIGHT);
+        d.scene_path = baked_scene("lamp_registers");
+        d.desc.readback = MASU_READBACK_HDR;
+        d.desc.rung_count = 1;
+        d.no_renderer = true;
+        open_session(&l.s, &d);
+        real_proc = l.s.desc.vulkan.get_instance_proc_addr;
+        if (pass) l.s.desc.vulkan.get_instance_proc_addr = mali_proc;
+        assert_true(masu_session_start(&l.s, error, sizeof error));
+        const uint16_t *hdr = settle(&l, &view);
+        for (uint32_t i = 0; i < VALUES; i++) {
+            if (!pass) {
+                first[i] = hdr[i];
+                continue;
+            }
+            double a = half_float(first[i]), b = half_float(hdr[i]);
+            bright += a > 0.01;
+            different += a != b;
+            if (fabs(a - b) > worst * fmax(a, 1e-3)) worst = fabs(a - b) / fmax(a, 1e-3);
+        }
+        close_session(&l.s);
+    }
+    print_message("few registers: %u of %u values differ, by %.2e at most\n", different, bright,
+                  worst);
+    assert_true(bright > VALUES / 4);
+    assert_true(different > 0); /* the other form ran */
+    assert_true(worst < 2e-3);  /* two steps of a half float */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(visibility_is_that_of_rays),
@@ -663,6 +725,7 @@ int main(void) {
         cmocka_unit_test(shadows_come_and_go_by_steps),
         cmocka_unit_test(a_point_that_moves_keeps_its_walls),
         cmocka_unit_test(lights_come_and_go),
+        cmocka_unit_test(few_registers_change_only_rounding),
         cmocka_unit_test(nothing_is_planned_where_no_light_casts),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

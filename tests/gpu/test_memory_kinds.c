@@ -169,6 +169,24 @@ static void recordings_hold_the_barriers_that_only_real_devices_need(void **stat
     wrap_reset();
 }
 
+/* NaN, infinity, and half floats of NaN and 1. */
+static void each_kind_of_poison_is_another(void **state) {
+    (void)state;
+    static const uint32_t words[] = {0x7FC07FC0u, 0x7C007C00u, 0x3C007FC0u};
+    for (uint32_t kind = 1; kind <= 3; kind++) {
+        masu_session_desc d = test_desc("test_velocity_mesh", 16, 16);
+        masu_session s;
+        wrap_reset();
+        d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+        d.desc.rung_count = 1;
+        d.desc.debug.poison = kind;
+        open_session(&s, &d);
+        assert_int_equal(wrap.poison, words[kind - 1]);
+        close_session(&s);
+        wrap_reset();
+    }
+}
+
 /* ---- Images that share memory ---------------------------------------------------------------- */
 
 typedef struct noted {
@@ -253,6 +271,7 @@ int main(void) {
         cmocka_unit_test(an_apu_gets_one_block_of_the_type_that_is_both),
         cmocka_unit_test(a_block_of_the_host_that_cannot_serve_is_refused),
         cmocka_unit_test(recordings_hold_the_barriers_that_only_real_devices_need),
+        cmocka_unit_test(each_kind_of_poison_is_another),
         cmocka_unit_test(an_image_waits_for_those_that_had_its_bytes),
     };
     return cmocka_run_group_tests_name("memory_kinds", tests, NULL, NULL);

@@ -307,6 +307,29 @@ static void what_a_wall_hides_is_not_drawn(void **state) {
     close_session(&s);
 }
 
+/* The rasterizer's depth of an object is exact to 2^-13: one that lies deeper in a wall by less may
+ * show through it, and is drawn; one that lies deeper by four times as much is not. */
+static void what_lies_in_a_wall_by_less_than_the_rounding_is_drawn(void **state) {
+    (void)state;
+    masu_session s;
+    open_scene(&s, 96, 64);
+    for (uint32_t i = 0; i < WALLS; i++) place_box(&s, "wall", i, 0, -1e4, 0, 1, 1, 1);
+    for (uint32_t i = 0; i < THINGS; i++) place_box(&s, "thing", i, 0, -1e4, 0, 1, 1, 1);
+    masu_camera c = {.forward = {0, 0, -1}, .fov_y = 1.2f};
+    for (uint32_t n = 0; n < 8; n++) {
+        const double z = 4 + 3 * n, thick = 0.1 * z;
+        place_box(&s, "wall", 3, 0, 0, -z - thick / 2, z, z, thick);
+        for (int deep = 0; deep < 2; deep++) {
+            double front = z * (1 + (deep ? 4 : 0.8) / 8192.0), size = 0.02 * z;
+            place_box(&s, "thing", 7, size * n, 0, -front - size / 2, size, size, size);
+            masu_view_stats view = compare(&s, &c, 1, "deep", n).views[0];
+            assert_int_equal(view.instances, 2);
+            assert_int_equal(view.visible_instances, deep ? 1 : 2);
+        }
+    }
+    close_session(&s);
+}
+
 static void scenes_without_occluders_have_none_of_it(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_velocity_mesh", 32, 32);
@@ -336,6 +359,7 @@ int main(void) {
         cmocka_unit_test(a_mesh_that_is_cut_open_hides_nothing),
         cmocka_unit_test(what_stands_before_a_slanted_wall_is_drawn),
         cmocka_unit_test(what_a_wall_hides_is_not_drawn),
+        cmocka_unit_test(what_lies_in_a_wall_by_less_than_the_rounding_is_drawn),
         cmocka_unit_test(scenes_without_occluders_have_none_of_it),
     };
     return cmocka_run_group_tests_name("occlusion", tests, NULL, NULL);

@@ -158,7 +158,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
                  stated[i].radius);
         bake_with(name, options);
         if (shell("test -e %s/%s.so || { %s/bin/masu-sdfc %s/%s.sdf --c %s/%s.c --quiet && "
-                  "%s -std=c11 -O2 -w -shared -fPIC -o %s/%s.so %s/%s.c -lm; }",
+                  "%s -std=c11 -O3 -w -shared -fPIC -o %s/%s.so %s/%s.c -lm; }",
                   scratch, name, build_dir(), strcmp(name, "parts300") ? "scenes" : "tests/scenes",
                   name, scratch, name, cc && *cc ? cc : "cc", scratch, name, scratch, name))
             fail_msg("no reference of %s", name);

@@ -120,11 +120,53 @@ static void make_fence(char *text, size_t size) {
              "\"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}");
 }
 
+/* A rough metal floor before a wall of white and black bars, and in front of that a red wall of the
+ * same mean luma. */
+static void make_bars(char *text, size_t size) {
+    size_t at = (size_t)snprintf(
+        text, size,
+        "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 14, \"size_z\": 14}}, \"material\": "
+        "{\"base_color\": [0.8, 0.8, 0.8], \"metallic\": 1, \"roughness\": 0.3}},"
+        "{\"name\": \"moving\", \"mesh\": {\"box\": {\"size\": [14, 6, 0.1]}}, \"translate\": "
+        "[0, 3, -2], \"material\": {\"base_color\": [0, 0, 0], \"emissive\": [0.8, 0, 0], "
+        "\"roughness\": 1}, \"area_light\": false}");
+    for (int i = 0; i < BARS; i++) {
+        at += (size_t)snprintf(
+            text + at, size - at,
+            ",{\"mesh\": {\"box\": {\"size\": [0.2, 6, 0.1]}}, \"translate\": [%.2f, 3, -3],"
+            "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [0.4, 0.4, 0.4], "
+            "\"roughness\": 1}, \"area_light\": false}",
+            0.4 * (i - BARS / 2));
+    }
+    snprintf(text + at, size - at,
+             "],\"camera\": {\"fov_y\": 30, \"keys\": [{\"position\": [0, 2.5, 9], \"target\": "
+             "[0, 0.2, 0]}]}, \"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0},"
+             "\"ambient\": [0, 0, 0], \"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}");
+}
+
+/* A tiny, very bright box above a rough floor of metal. */
+static const char spark[] =
+    "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 14, \"size_z\": 14}}, \"material\": "
+    "{\"base_color\": [0.8, 0.8, 0.8], \"metallic\": 1, \"roughness\": 0.2}},"
+    "{\"mesh\": {\"box\": {\"size\": [0.1, 0.1, 0.1]}}, \"translate\": [0, 1, -1], \"material\": "
+    "{\"base_color\": [0, 0, 0], \"emissive\": [400, 400, 400], \"roughness\": 1}, "
+    "\"area_light\": false}],"
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"time\": 0, \"position\": [0, 2.2, "
+    "5],"
+    "\"target\": [0, 0.2, 0]}, {\"time\": 4, \"position\": [2, 1.8, 4.6], \"target\": [0, 0.2, "
+    "0]}]},"
+    "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0, 0, 0],"
+    "\"sky\": {\"zenith\": [0.2, 0.2, 0.2], \"horizon\": [0.2, 0.2, 0.2]},"
+    "\"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}";
+
 static int make_scenes(void **state) {
     static char fence[16384];
     if (make_scratch(state)) return 1;
     make_fence(fence, sizeof fence);
     bake_scene("fence", fence);
+    make_bars(fence, sizeof fence);
+    bake_scene("bars", fence);
+    bake_scene("spark", spark);
     bake_scene("filters", spheres);
     bake_scene("furnace", furnace);
     bake_scene("panels", panels);
@@ -500,6 +542,61 @@ static void what_glides_over_a_mirror_leaves_no_trail(void **state) {
     }
 }
 
+/* The wall in front disappears: the luma of the floor's reflection stays, so that only its colour
+ * shows that the history is another wall's. Four frames later most of the red is gone. */
+static void the_color_of_what_has_gone_is_forgotten(void **state) {
+    (void)state;
+    enum { BEFORE = 24, AFTER = 4 };
+    double red[2] = {0};
+    masu_session_desc d = desc_of("bars");
+    masu_commands commands;
+    open_session(&s, &d);
+    for (uint32_t k = 0; k < BEFORE + AFTER; k++) {
+        bool gone = k >= BEFORE;
+        move_instance(&s, "moving", 0, gone ? 300.0f : 3.0f, -2, 1);
+        draw(&s, &(masu_frame_desc){.time_step = 1.0f / 60.0f, .cut = k == 0}, &commands, NULL);
+        assert_true(masu_specular_read(&s, picture));
+        red[gone] = 0;
+        for (uint32_t i = PIXELS / 2; i < PIXELS; i++)
+            red[gone] += (double)(picture[3 * i] - picture[3 * i + 1]);
+    }
+    close_session(&s);
+    printf("red left after %d frames: %.3f\n", AFTER, red[1] / red[0]);
+    assert_true(red[0] > 0.1 * PIXELS);
+    assert_true(red[1] < 0.3 * red[0]); /* 0.16; 0.46 with a clamp ten times as wide */
+}
+
+/* A pixel's own mean, of its first few rays, is no spark beside the means around it. */
+static void a_small_bright_lamp_leaves_no_sparks(void **state) {
+    (void)state;
+    masu_session_desc d = desc_of("spark");
+    masu_specular_run run = {.frames = TRUTH / 2, .time = 0.8};
+    double most = 0;
+    d.desc.debug.reference = 1;
+    open_session(&full, &d);
+    assert_ok(masu_specular_draw(&full, &run, other, NULL, NULL, error, sizeof error));
+    assert_true(masu_specular_classes(&full, 0.5f, classes));
+    close_session(&full);
+    d.desc.debug.reference = 0;
+    open_session(&s, &d);
+    for (uint32_t frames = 1; frames < 12; frames++) {
+        run = run_of(MASU_SPECULAR_REST);
+        run.frames = frames;
+        assert_ok(masu_specular_draw(&s, &run, picture, NULL, NULL, error, sizeof error));
+        for (uint32_t p = 0; p < PIXELS; p++) {
+            const int x = (int)(p % W), y = (int)(p / W);
+            float near = 0.0f;
+            if (classes[p] == 0xFF || x < 2 || y < 2 || x > (int)W - 3 || y > (int)H - 3) continue;
+            for (int n = 0; n < 25; n++)
+                near = fmaxf(near, other[3 * ((y + n / 5 - 2) * (int)W + x + n % 5 - 2)]);
+            most = worst_of(most, (double)(picture[3 * p] / near));
+        }
+    }
+    close_session(&s);
+    printf("the brightest spark: %.2f times the truth around it\n", most);
+    assert_true(most < 5); /* 1.3; 53 without a limit */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each),
@@ -512,6 +609,8 @@ int main(void) {
         cmocka_unit_test(what_other_images_left_behind_is_not_seen),
         cmocka_unit_test(the_history_of_another_surface_is_not_taken_up),
         cmocka_unit_test(what_glides_over_a_mirror_leaves_no_trail),
+        cmocka_unit_test(the_color_of_what_has_gone_is_forgotten),
+        cmocka_unit_test(a_small_bright_lamp_leaves_no_sparks),
     };
     return cmocka_run_group_tests_name("specular_filters", tests, make_scenes, remove_scratch);
 }

@@ -305,7 +305,7 @@ static void hits_are_those_of_the_truth(void **unused) {
     for (int i = 0; i < 2; i++) {
         stage s = open_stage(scenes[i], &around);
         for (int k = 0; k < 2; k++) {
-            figures f = judge(&s, scenes[i], rough[k], 1);
+            figures f = judge(&s, scenes[i], rough[k], trials(1, 2, 2));
             assert_true(f.off_p50 <= 0.01);
             assert_true(f.off_p99 <= 0.5);
             assert_true(f.angle_p99 <= 5);

@@ -35,7 +35,7 @@ static int make_truth(void **state) {
     if (make_scratch(state)) return 1;
     if (shell("%s/bin/masu-sdfc tests/scenes/test_velocity.sdf --c %s/t.c --quiet --pairs 100",
               build_dir(), scratch) ||
-        shell("%s -std=c11 -O2 -w -shared -fPIC -o %s/t.so %s/t.c -lm", c_compiler(), scratch,
+        shell("%s -std=c11 -O3 -w -shared -fPIC -o %s/t.so %s/t.c -lm", c_compiler(), scratch,
               scratch)) {
         return 1;
     }

@@ -312,7 +312,7 @@ static int is_code(uint32_t kind) {
 static void add_code(support_blob *blob, enum masu_blob_kind kind) {
     uint32_t update = kind == MASU_BLOB_UPDATE_SPIRV || kind == MASU_BLOB_UPDATE_PREVIOUS_SPIRV;
     uint32_t columns = update ? 1 : kind == MASU_BLOB_SEED_SPIRV ? 4 : 8;
-    const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 5, 0,
+    const uint32_t head[] = {0x07230203u, 0x00010000u, 0, 5, 0,
                              2u << 16 | 17, 1,    /* OpCapability Shader */
                              3u << 16 | 14, 0, 1, /* OpMemoryModel Logical GLSL450 */
                              5u << 16 | 15, 5, 1, 0x6E69616Du, 0}; /* OpEntryPoint %1 "main" */

@@ -288,7 +288,9 @@ static VKAPI_ATTR void VKAPI_CALL cmd_barrier(VkCommandBuffer cmd, VkPipelineSta
 
 static VKAPI_ATTR void VKAPI_CALL cmd_fill(VkCommandBuffer cmd, VkBuffer buffer,
                                            VkDeviceSize offset, VkDeviceSize size, uint32_t word) {
-    wrap.fills_of_poison += word == 0x7FC07FC0u || word == 0x7C007C00u || word == 0x3C007FC0u;
+    bool poison = word == 0x7FC07FC0u || word == 0x7C007C00u || word == 0x3C007FC0u;
+    wrap.fills_of_poison += poison;
+    if (poison) wrap.poison = word;
     real_fill(cmd, buffer, offset, size, word);
 }
 
@@ -416,6 +418,13 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
     }
 }
 
+static VKAPI_ATTR void VKAPI_CALL get_core_features(VkPhysicalDevice device,
+                                                    VkPhysicalDeviceFeatures *out) {
+    vkGetPhysicalDeviceFeatures(device, out);
+    if (wrap.row) masu_device_row_deny(wrap.row, out);
+    if (wrap.no_features) memset(out, 0, sizeof *out);
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL get_extensions(VkPhysicalDevice device, const char *layer,
                                                      uint32_t *n, VkExtensionProperties *out) {
     if (!wrap.no_extensions) return vkEnumerateDeviceExtensionProperties(device, layer, n, out);
@@ -436,6 +445,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL wrap_get_instance_proc_addr(VkInstance 
         return real_label ? (PFN_vkVoidFunction)cmd_label : NULL;
     }
     if (!strcmp(name, "vkGetPhysicalDeviceFeatures2")) return (PFN_vkVoidFunction)get_features;
+    if (!strcmp(name, "vkGetPhysicalDeviceFeatures")) return (PFN_vkVoidFunction)get_core_features;
     if (!strcmp(name, "vkEnumerateDeviceExtensionProperties"))
         return (PFN_vkVoidFunction)get_extensions;
     if (!strcmp(name, "vkGetPhysicalDeviceFormatProperties")) return (PFN_vkVoidFunction)get_format;

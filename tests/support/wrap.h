@@ -55,7 +55,7 @@ typedef struct wrap_state {
     VkPipelineStageFlags first_barrier_from, first_barrier_to;
     bool host_barrier, counter_barrier;
     VkImageLayout last_layout;
-    uint32_t labels, fills_of_poison;
+    uint32_t labels, fills_of_poison, poison; /* the last fill's */
     /* Called when recording of a pass begins, before its barriers; with debug.labels. */
     void (*on_label)(VkCommandBuffer cmd, const char *name);
     /* Called for each image of a recorded barrier. */

@@ -20,6 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define HOSTILE "<script>'`touch STRUCK`'</script>&"
 
@@ -152,6 +153,34 @@ static void the_index_links_every_scene(void **state) {
     assert_non_null(strstr(page, "href=\"./a%3Cb%3E%23%25/index.html\">a&lt;b&gt;#%</a>"));
     assert_non_null(strstr(page, "href=\"./plain/ladder.json\">plain</a>"));
     check_alone(page);
+    free(page);
+}
+
+/* More folders than any fixed list had room for; all of them are one. */
+static void the_index_has_no_most(void **state) {
+    (void)state;
+    enum { FOLDERS = 1100 };
+    char error[1024], path[256], name[64];
+    uint32_t count, found = 0;
+    masu_report_result result;
+    mkdir(in_scratch("many"), 0777);
+    make_folder("one", "scale=0.5", "x");
+    make_picture("one/pictures/scale=0.5.png");
+    snprintf(path, sizeof path, "%s", in_scratch("one"));
+    if (!masu_report_write(path, &result, error, sizeof error)) fail_msg("%s", error);
+    for (int i = 0; i < FOLDERS; i++) {
+        snprintf(name, sizeof name, "many/%04d", i);
+        assert_int_equal(symlink("../one", in_scratch(name)), 0);
+    }
+    snprintf(path, sizeof path, "%s", in_scratch("many"));
+    if (!masu_bench_index(path, &count, error, sizeof error)) fail_msg("%s", error);
+    assert_int_equal(count, FOLDERS);
+    char *page = read_file(in_scratch("many/index.html"), NULL);
+    for (const char *at = page; (at = strstr(at, "<a href=")); at++) {
+        snprintf(name, sizeof name, "<a href=\"./%04u/index.html\">", found++);
+        assert_int_equal(strncmp(at, name, strlen(name)), 0);
+    }
+    assert_int_equal(found, FOLDERS);
     free(page);
 }
 
@@ -295,6 +324,7 @@ int main(void) {
         cmocka_unit_test(the_first_rung_within_the_budget_is_the_verdict),
         cmocka_unit_test(an_image_fits_its_bytes),
         cmocka_unit_test(the_index_links_every_scene),
+        cmocka_unit_test(the_index_has_no_most),
         cmocka_unit_test(a_title_is_no_command_of_gnuplot),
         cmocka_unit_test(a_quoted_text_is_one_string_of_gnuplot),
         cmocka_unit_test(a_setting_does_not_lead_out_of_the_folder),

@@ -56,6 +56,31 @@ static void labels_never_cover_each_other(void **state) {
     }
 }
 
+/* A line blocks every place that it comes near, and no other. */
+static void labels_keep_away_from_lines(void **state) {
+    (void)state;
+    static masu_labels l;
+    const double at[2] = {1, 0.01}, right[2] = {2, 0.01}, far[2] = {9, 0.09};
+    double out[2];
+    l = chart();
+    masu_labels_line(&l, at, right); /* to the right, where a label is if nothing is in its way */
+    assert_true(masu_labels_place(&l, at, "name", 10, out));
+    assert_true(out[1] > 0.01); /* above the line */
+    l = chart();
+    masu_labels_line(&l, (const double[]){1.5, 0.0011}, (const double[]){1.5, 0.099}); /* apart */
+    masu_labels_line(&l, far, far);
+    assert_true(masu_labels_place(&l, at, "name", 10, out));
+    assert_float_equal(out[1], 0.01, 1e-9);
+    l = chart(); /* through the text: 7 to 31 pixels right of the point, and 2 of distance */
+    const double inside = pow(10, 32.5 / 400), outside = pow(10, 33.5 / 400);
+    masu_labels_line(&l, (const double[]){outside, 0.002}, (const double[]){outside, 0.09});
+    assert_true(masu_labels_place(&l, at, "name", 10, out) && fabs(out[1] - 0.01) < 1e-9);
+    l = chart();
+    masu_labels_line(&l, (const double[]){inside, 0.002}, (const double[]){inside, 0.09});
+    assert_true(masu_labels_place(&l, at, "name", 10, out));
+    assert_true(out[0] < 1); /* all places to the right are taken */
+}
+
 /* Near the right border a label is left of its point; one longer than the chart has no place. */
 static void labels_stay_within_the_chart(void **state) {
     (void)state;
@@ -76,6 +101,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lone_label_is_right_of_its_point),
         cmocka_unit_test(labels_never_cover_each_other),
+        cmocka_unit_test(labels_keep_away_from_lines),
         cmocka_unit_test(labels_stay_within_the_chart),
     };
     return cmocka_run_group_tests_name("bench_labels", tests, NULL, NULL);

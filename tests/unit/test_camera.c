@@ -568,6 +568,9 @@ static void the_anchor_is_on_a_grid_near_an_eye_that_is_far_out(void **state) {
         write_good(&f, 0);
         struct masu_frame_uniforms u = uniforms(0);
         int far = n % 4 != 0 && most >= MASU_ANCHOR_FROM;
+        float largest = 0;
+        for (int k = 0; k < 3; k++) largest = fmaxf(largest, fabsf(u.sdf_eye_hi[k]));
+        assert_true(u.sdf_eye_hi[3] == 8 * FLT_EPSILON * largest);
         for (int k = 0; k < 3; k++) {
             double anchor = (double)u.anchor[k];
             double eye = (double)u.sdf_eye_hi[k] + (double)u.sdf_eye_lo[k];

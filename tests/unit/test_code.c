@@ -106,7 +106,7 @@ enum { CAPABILITY = 5, MODEL = 7, ENTRY = 10, MODE = 15, TAIL = 21 + MASU_MODULE
 static void what_no_pass_could_run_is_refused(void **state) {
     (void)state;
     const change changes[] = {
-        {1, 0x00010400, "version"},
+        {1, 0x00010300, "version"},
         {3, 0, "ids"},
         {3, 65537, "ids"},
         {3, 4, "bound"},
@@ -172,12 +172,14 @@ static void a_module_that_is_cut_anywhere_is_refused(void **state) {
 
 /* ---- Required resources ---------------------------------------------------------------------- */
 
+enum { EXTENSION = 7 };
+static const char extension[40] = "SPV_KHR_storage_buffer_storage_class";
+
 /* A module with one resource, of this class, in set and binding. */
 static uint32_t resource_module(uint32_t *words, uint32_t set, uint32_t binding, uint32_t class) {
     static const uint32_t storage[] = {0, 2, 12, 0, 0, 9};
-    const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 16,        0, OP(2, 17), 1,
-                             OP(3, 14),   0,           1, OP(5, 15), 5, 1,         0x6E69616Du,
-                             0,           OP(6, 16),   1, 17,        8, 8,         1};
+    uint32_t head[] = {0x07230203u, 0x00010000u, 0, 16, 0, OP(2, 17), 1, OP(11, 10), [18] = OP(3, 14),
+                       0, 1, OP(5, 15), 5, 1, 0x6E69616Du, 0, OP(6, 16), 1, 17, 8, 8, 1};
     const uint32_t globals[] = {OP(5, 72),
                                 8,
                                 0,
@@ -219,6 +221,7 @@ static uint32_t resource_module(uint32_t *words, uint32_t set, uint32_t binding,
     const uint32_t tail[] = {OP(2, 19), 2, OP(3, 33), 3,          2, OP(5, 54),  2,
                              1,         0, 3,         OP(2, 248), 4, OP(1, 253), OP(1, 56)};
     uint32_t n = COUNT(head);
+    memcpy(head + EXTENSION + 1, extension, sizeof extension);
     memcpy(words, head, sizeof head);
     if (class <= MASU_MODULE_IMAGE) {
         memcpy(words + n, bind, sizeof bind);
@@ -251,8 +254,31 @@ static void what_a_module_asks_for_is_found(void **state) {
     assert_null(masu_module_read(words, count, &code, &at));
     assert_int_equal(code.push_bytes, 28);
     assert_int_equal(code.bound_count, 0);
-    words[25] = 128; /* the offset: beyond all device limits */
+    words[36] = 128; /* the offset: beyond all device limits */
     assert_non_null(masu_module_read(words, count, &code, &at));
+}
+
+/* A Vulkan 1.0 device has no other storage for storage buffers, and no other extension. */
+static void the_storage_class_is_the_only_extension(void **state) {
+    (void)state;
+    uint32_t words[128];
+    masu_module code;
+    uint64_t at;
+    uint32_t count = resource_module(words, 1, 7, MASU_MODULE_STORAGE);
+    assert_null(masu_module_read(words, count, &code, &at));
+    for (uint32_t k = 1; k < 11; k++) {
+        words[EXTENSION + k] ^= 1;
+        assert_string_equal(masu_module_read(words, count, &code, &at),
+                            "an extension is asked for that no pass has");
+        assert_int_equal(at, EXTENSION);
+        words[EXTENSION + k] ^= 1;
+    }
+    memmove(words + EXTENSION, words + EXTENSION + 11, (count - EXTENSION - 11) * sizeof *words);
+    assert_string_equal(masu_module_read(words, count - 11, &code, &at),
+                        "storage buffers need SPV_KHR_storage_buffer_storage_class");
+    count = resource_module(words, 1, 7, MASU_MODULE_UNIFORMS);
+    memmove(words + EXTENSION, words + EXTENSION + 11, (count - EXTENSION - 11) * sizeof *words);
+    assert_null(masu_module_read(words, count - 11, &code, &at));
 }
 
 /* The march pass: cone4 as a sampled image, three storage images; frame, counters, slots, tiles. */
@@ -326,6 +352,7 @@ int main(void) {
         cmocka_unit_test(every_other_capability_is_refused),
         cmocka_unit_test(a_module_that_is_cut_anywhere_is_refused),
         cmocka_unit_test(what_a_module_asks_for_is_found),
+        cmocka_unit_test(the_storage_class_is_the_only_extension),
         cmocka_unit_test(a_resource_that_the_pass_does_not_bind_is_refused),
         cmocka_unit_test(any_word_gives_an_answer),
     };

@@ -304,6 +304,39 @@ static masu_desc full_desc(void) {
     return d;
 }
 
+/* Each format that is offered: bits of red, green and blue, to whose steps the last pass rounds. */
+static void each_format_has_its_steps(void **state) {
+    (void)state;
+    static const struct {
+        VkFormat format;
+        uint32_t bits[3]; /* 0: no rounding */
+        int deep;
+    } rows[] = {{VK_FORMAT_R8G8B8A8_UNORM, {8, 8, 8}, 0},
+                {VK_FORMAT_B8G8R8A8_UNORM, {8, 8, 8}, 0},
+                {VK_FORMAT_A8B8G8R8_UNORM_PACK32, {8, 8, 8}, 0},
+                {VK_FORMAT_R8G8B8A8_SRGB, {8, 8, 8}, 0},
+                {VK_FORMAT_B8G8R8A8_SRGB, {8, 8, 8}, 0},
+                {VK_FORMAT_A8B8G8R8_SRGB_PACK32, {8, 8, 8}, 0},
+                {VK_FORMAT_A2B10G10R10_UNORM_PACK32, {10, 10, 10}, 1},
+                {VK_FORMAT_A2R10G10B10_UNORM_PACK32, {10, 10, 10}, 1},
+                {VK_FORMAT_R5G6B5_UNORM_PACK16, {5, 6, 5}, 0},
+                {VK_FORMAT_B5G6R5_UNORM_PACK16, {5, 6, 5}, 0},
+                {VK_FORMAT_R16G16B16A16_UNORM, {0, 0, 0}, 1},
+                {VK_FORMAT_R16G16B16A16_SFLOAT, {0, 0, 0}, 1}};
+    static masu_frame_plan plan;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        masu_desc d = scene_desc(RASTER, 64, 64);
+        d.targets.format = rows[i].format, d.targets.storage = 0;
+        d.targets.views = NULL;
+        masu_desc resolved = masu_desc_resolved(&d);
+        assert_int_equal(resolved.deep_color == MASU_ON, rows[i].deep);
+        assert_int_equal(resolved.dither == MASU_ON, !rows[i].deep);
+        compile(&d, &plan);
+        for (int c = 0; c < 3; c++)
+            assert_int_equal(plan.output.steps[c], (1u << rows[i].bits[c]) - 1);
+    }
+}
+
 /* Defaults that follow from the target and the scene. */
 static void output_follows_from_target_and_scene(void **state) {
     (void)state;
@@ -1103,6 +1136,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_zero_becomes_its_documented_default),
         cmocka_unit_test(zeros_inside_given_rungs_become_defaults_too),
+        cmocka_unit_test(each_format_has_its_steps),
         cmocka_unit_test(output_follows_from_target_and_scene),
         cmocka_unit_test(what_is_given_stays_as_it_is),
         cmocka_unit_test(words_are_resolved_by_the_rule_of_the_plan),

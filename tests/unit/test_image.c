@@ -502,11 +502,34 @@ static void the_error_buffer_may_be_short_or_absent(void **state)
     masu_image_free(&image);
 }
 
+/* The bytes needed do not depend on the room, and nothing is written beyond it. */
+static void a_jpeg_is_cut_at_its_room(void **state) {
+    (void)state;
+    static uint8_t rgba[33 * 17 * 4], whole[8192], part[8192];
+    for (uint32_t i = 0; i < sizeof rgba; i++) rgba[i] = (uint8_t)(i * i >> 3);
+    assert_int_equal(masu_image_encode_jpeg(rgba, 33, 17, 0, whole, sizeof whole), 0);
+    assert_int_equal(masu_image_encode_jpeg(rgba, 33, 17, 101, whole, sizeof whole), 0);
+    assert_int_equal(masu_image_encode_jpeg(rgba, 0, 17, 50, whole, sizeof whole), 0);
+    size_t low = masu_image_encode_jpeg(rgba, 33, 17, 1, whole, sizeof whole);
+    size_t high = masu_image_encode_jpeg(rgba, 33, 17, 100, whole, sizeof whole);
+    assert_true(low > 300 && high > 2 * low && high < sizeof whole);
+    assert_memory_equal(whole, "\xFF\xD8\xFF", 3);
+    assert_memory_equal(whole + high - 2, "\xFF\xD9", 2);
+    for (size_t most = high - 1; most <= high + 1; most++) {
+        memset(part, 0xA5, sizeof part);
+        assert_int_equal(masu_image_encode_jpeg(rgba, 33, 17, 100, part, most), high);
+        assert_memory_equal(part, whole, most < high ? most : high);
+        assert_int_equal(part[most < high ? most : high], 0xA5);
+    }
+    assert_int_equal(masu_image_encode_jpeg(rgba, 33, 17, 100, NULL, 0), high);
+}
+
 #define IN_A_DIRECTORY(test) cmocka_unit_test_setup_teardown(test, make_directory, remove_directory)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_jpeg_is_cut_at_its_room),
         IN_A_DIRECTORY(a_png_comes_back_as_it_was_written),
         IN_A_DIRECTORY(padding_between_rows_is_not_written),
         IN_A_DIRECTORY(other_kinds_of_png_arrive_as_8_bit_rgba),

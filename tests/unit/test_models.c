@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "frame/meshes.h"
 #include "plan/compile.h"
 #include "support/bind.h"
 #include "support/desc.h"
@@ -305,6 +306,26 @@ static void places_are_as_large_as_the_largest(void **state) {
     assert_memory_equal(&some.scene, &none.scene, sizeof some.scene);
 }
 
+/* Each kind of meshes has a word, and what follows in the description is no kind. */
+static void words_are_those_of_the_kinds_of_meshes(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static masu_blob_material materials[2];
+    struct {
+        masu_meshes meshes;
+        uint32_t after[4];
+    } s;
+    const masu_scene_view view = {.materials = materials};
+    memset(&s, 0x55, sizeof s);
+    plan.scene.host_nodes = 1;
+    plan.desc.reserve.meshes[MASU_MAX_MESH_KINDS - 1] = (masu_mesh_kind){.meshes = 1, .material = 1};
+    plan.desc.reserve.mesh_upload = 64;
+    masu_meshes_copy_scene(&s.meshes, &plan, &view);
+    assert_int_equal(s.meshes.words[MASU_MAX_MESH_KINDS - 1], 1);
+    assert_int_equal(s.meshes.words[0], 0x55555555);
+    for (size_t i = 0; i < 4; i++) assert_int_equal(s.after[i], 0x55555555);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_blob_tells_its_models),
@@ -315,6 +336,7 @@ int main(void) {
         cmocka_unit_test(a_double_position_is_exact),
         cmocka_unit_test(a_spare_one_is_shown),
         cmocka_unit_test(places_are_as_large_as_the_largest),
+        cmocka_unit_test(words_are_those_of_the_kinds_of_meshes),
     };
     return cmocka_run_group_tests(tests, support_make_edge, NULL);
 }

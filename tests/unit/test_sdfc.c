@@ -503,6 +503,31 @@ static void parts_of_one_form_share_its_code(void **state) {
     assert_true(result.slots[head + 7] == 7);
     assert_int_equal(count(result.glsl, "masu_slot_write("), 50);
     masu_sdfc_release(&result);
+    static const char own[] =
+        "for i in 0..4 { part a = translate((i, 0, 0), glsl { return length(p) - 0.4; } "
+        "bounds (-1, -1, -1), (1, 1, 1) lipschitz 1); }\n"
+        "part b = glsl { return length(p) - 0.5; } bounds (-1, -1, -1), (1, 1, 1) "
+        "lipschitz 1;\n";
+    assert_compiles(own, sizeof own - 1, &result);
+    assert_int_equal(result.part_count, 5);
+    assert_int_equal(result.shape_count, 2);
+    masu_sdfc_release(&result);
+}
+
+/* Slots depend on the anchor if it was asked for, and if a part has a place. */
+static void what_depends_on_the_anchor_is_told(void **state) {
+    (void)state;
+    static const char text[] = "part a = translate((1, 2, 3), sphere(0.5));\n";
+    for (int asked = 0; asked < 2; asked++) {
+        masu_sdfc_options options = {.anchored = asked, .pairs = UINT32_MAX};
+        masu_sdfc_result result;
+        char error[2048];
+        if (!masu_sdfc_compile_with(text, sizeof text - 1, "x.sdf", &options, &result, error,
+                                    sizeof error))
+            fail_msg("%s", error);
+        assert_int_equal(result.anchored, asked);
+        masu_sdfc_release(&result);
+    }
 }
 
 /* Bits for the parts and their terms that a block can skip: only if the test pays off, if the part
@@ -723,6 +748,10 @@ static void mistakes_name_their_place(void **state) {
         {"let a = 1;\npart b = spher(1);",
          "x.sdf:2:10: expected a shape, found \"spher\": did you mean \"sphere\"?\n"
          "part b = spher(1);\n         ^"},
+        {"part a = tarus(2, 1);", /* one letter of five; two are too many */
+         "x.sdf:1:10: expected a shape, found \"tarus\": did you mean \"torus\"?\n"
+         "part a = tarus(2, 1);\n         ^"},
+        {"part a = taris(2, 1);", "x.sdf:1:10: expected a shape, found \"taris\""},
         {"part a = box(1, 2);", "x.sdf:1:15: expected \")\", found \",\""},
         {"part a = sphere((1, 2, 3));", "x.sdf:1:17: expected a number, found three numbers"},
         {"part a : gold = sphere(1);", "x.sdf:1:10: expected a material, found \"gold\""},
@@ -1165,6 +1194,7 @@ int main(void) {
         cmocka_unit_test(one_sphere_has_the_code_of_one_sphere),
         cmocka_unit_test(no_scene_has_a_function_that_it_does_not_call),
         cmocka_unit_test(parts_of_one_form_share_its_code),
+        cmocka_unit_test(what_depends_on_the_anchor_is_told),
         cmocka_unit_test(blocks_have_bits_for_what_can_be_left_out),
         cmocka_unit_test(the_box_of_the_parts_follows_the_parameters),
         cmocka_unit_test(parts_that_move_are_told_from_those_that_rest),

@@ -199,6 +199,13 @@ static void what_a_cascade_still_holds_is_told(void **state) {
     assert_false(masu_cascade_holds(&drawn, &other));
     other = masu_cascade_fit(&v, 31, 0.1, 256);
     assert_false(masu_cascade_holds(&drawn, &other));
+    other = masu_cascade_fit(&v, 30, 0.1, 256);
+    assert_true(masu_cascade_holds(&drawn, &other));
+    other.lod_error = 2; /* other LODs */
+    assert_false(masu_cascade_holds(&drawn, &other));
+    other.lod_error = 0;
+    drawn.trimmed = 1; /* without the casters that shadowed nothing in its own frame */
+    assert_false(masu_cascade_holds(&drawn, &other));
 }
 
 /* A point relative to the cascade's origin, as in rendering, and relative to the camera, as in the

@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "scene/material.h"
 #include "shared/masu_shared.h"
 #include "support/files.h"
 #include "support/spirv.h"
@@ -247,6 +248,15 @@ static void every_member_in_c_is_in_the_table(void **state) {
     }
 }
 
+/* A material without thickness is metallic by its number; the thinnest one has packed bits. */
+static void only_what_is_thick_refracts(void **state) {
+    (void)state;
+    masu_blob_material m = {.metallic = 0.75f, .ior = 1.5f};
+    assert_true(masu_material_data_of(&m).emissive[3] == 0.75f);
+    m.thickness = 0x1p-14f;
+    assert_true(masu_material_data_of(&m).emissive[3] < 0);
+}
+
 /* The minimum of every device: 16 KiB of uniforms. */
 _Static_assert(sizeof(struct masu_frame_uniforms) <= 16384, "uniforms fit any device");
 _Static_assert(sizeof(struct masu_frame_uniforms) % 16 == 0, "uniforms are whole vec4s");
@@ -256,6 +266,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shared_struct_is_laid_out_alike_in_c_and_in_every_shader),
         cmocka_unit_test(every_member_in_c_is_in_the_table),
+        cmocka_unit_test(only_what_is_thick_refracts),
     };
     return cmocka_run_group_tests_name("shared_layout", tests, find_shaders, forget_shaders);
 }

@@ -12,8 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FOLDERS_MAX 1024u
-
 static bool has(const char *folder, const char *file) {
     char path[4096];
     return masu_sweep_path(folder, file, path) && masu_file_exists(path);
@@ -60,11 +58,11 @@ static bool put_scene(FILE *f, const char *folder, const char *name, char *error
     }
     if (good && masu_verdict_find(rungs, found, &v)) {
         masu_markup(f,
-                    "</td><td class=\"%s\">%s</td><td>%u of %u: %s</td><td>%.2f</td><td>%.4f</td>",
-                    v.holds ? "holds" : "bad", v.holds ? "holds" : "no rung holds", v.rung, found,
-                    rungs[v.rung]->setting, v.ms, v.error);
-        masu_markup(f, "<td>%ux%u</td><td>%s</td><td>%s</td></tr>\n", l->width, l->height, l->date,
-                    l->driver);
+                    "</td><td class=\"%s\">%s</td><td>%.2f</td><td>%.4f</td>",
+                    v.holds ? "holds" : "bad", v.holds ? "holds" : "no rung holds", v.ms, v.error);
+        masu_markup(f, "<td class=\"text\">%u of %u: %s</td><td>%ux%u</td><td>%s</td>", v.rung,
+                    found, rungs[v.rung]->setting, l->width, l->height, l->date);
+        masu_markup(f, "<td class=\"text\">%s</td></tr>\n", l->driver);
     } else if (good) {
         fputs("</td><td>no times</td>", f);
         for (int column = 2; column < 8; column++) fputs("<td>-</td>", f);
@@ -75,28 +73,39 @@ static bool put_scene(FILE *f, const char *folder, const char *name, char *error
     return good;
 }
 
+/* Adds a copy of `name` to the array; false: out of memory. */
+static bool add_name(char ***names, uint32_t *count, const char *name) {
+    if (!(*count & (*count - 1))) { /* a power of two: full */
+        char **more = realloc(*names, (*count ? 2 * (size_t)*count : 1) * sizeof *more);
+        if (!more) return false;
+        *names = more;
+    }
+    (*names)[*count] = strdup(name);
+    if (!(*names)[*count]) return false;
+    ++*count;
+    return true;
+}
+
 bool masu_bench_index(const char *folder, uint32_t *count, char *error, size_t error_size) {
-    char *names[FOLDERS_MAX], path[4096], *text = NULL;
+    char **names = NULL, path[4096], *text = NULL;
     size_t bytes = 0;
     DIR *d = opendir(folder);
     const struct dirent *e;
     bool good = true;
     *count = 0;
-    while (d && (e = readdir(d)) && *count < FOLDERS_MAX) {
-        if (*e->d_name == '.' || !masu_sweep_path(folder, e->d_name, path) ||
-            !has(path, "ladder.json") || !has(path, "results.csv"))
-            continue;
-        names[*count] = strdup(e->d_name);
-        *count += names[*count] != NULL;
+    while (good && d && (e = readdir(d))) {
+        if (*e->d_name != '.' && masu_sweep_path(folder, e->d_name, path) &&
+            has(path, "ladder.json") && has(path, "results.csv"))
+            good = add_name(&names, count, e->d_name);
     }
     if (d) closedir(d);
-    if (!*count) {
+    if (good && !*count) {
         snprintf(error, error_size, "%.2000s: found no folder with ladder.json and results.csv",
                  folder);
         return false;
     }
-    qsort(names, *count, sizeof *names, by_name);
-    FILE *f = open_memstream(&text, &bytes);
+    if (good) qsort(names, *count, sizeof *names, by_name);
+    FILE *f = good ? open_memstream(&text, &bytes) : NULL;
     if (f) {
         masu_page_begin(f, "Error against run time: ", "all scenes");
         masu_markup(
@@ -104,8 +113,8 @@ bool masu_bench_index(const char *folder, uint32_t *count, char *error, size_t e
             "<p>Verdict: the first rung, in falling quality, whose median frame takes at most "
             "%.2f ms (60 Hz), or else the fastest rung.</p>\n"
             "<div class=\"wide\"><table class=\"sort\">\n"
-            "<tr><th>scene</th><th>verdict</th><th>rung</th><th>ms</th><th>error</th><th>size</th>"
-            "<th>date</th><th>driver</th></tr>\n",
+            "<tr><th>scene</th><th>verdict</th><th>ms</th><th>error</th><th class=\"text\">rung</th>"
+            "<th>size</th><th>date</th><th class=\"text\">driver</th></tr>\n",
             MASU_PAGE_BUDGET_MS);
     }
     for (uint32_t i = 0; f && i < *count && good; i++)
@@ -123,5 +132,6 @@ bool masu_bench_index(const char *folder, uint32_t *count, char *error, size_t e
            masu_file_write(path, text, bytes, error, error_size);
     free(text);
     for (uint32_t i = 0; i < *count; i++) free(names[i]);
+    free(names);
     return good;
 }

@@ -23,6 +23,32 @@ void masu_labels_mark(masu_labels *l, const double at[2], double radius) {
     (void)add(l, &box);
 }
 
+void masu_labels_line(masu_labels *l, const double from[2], const double to[2]) {
+    if (l->line_count == MASU_LABELS_MAX) return;
+    for (int k = 0; k < 2; k++) {
+        l->lines[l->line_count][0][k] = pixel(l, k, from[k]);
+        l->lines[l->line_count][1][k] = pixel(l, k, to[k]);
+    }
+    l->line_count++;
+}
+
+/* Whether a line comes nearer than LINE_GAP to a box: its part between both pairs of sides. */
+#define LINE_GAP 2.0
+static bool crosses(const double line[2][2], const struct masu_label_box *box) {
+    double enter = 0, leave = 1;
+    for (int k = 0; k < 2; k++) {
+        const double low = box->low[k] - LINE_GAP - line[0][k],
+                     high = box->high[k] + LINE_GAP - line[0][k], along = line[1][k] - line[0][k];
+        if (fabs(along) < 1e-9) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        enter = fmax(enter, fmin(low / along, high / along));
+        leave = fmin(leave, fmax(low / along, high / along));
+    }
+    return enter <= leave;
+}
+
 static bool is_free(const masu_labels *l, const struct masu_label_box *box) {
     for (int k = 0; k < 2; k++)
         if (!(box->low[k] >= 0) || !(box->high[k] <= l->size[k])) return false;
@@ -32,6 +58,8 @@ static bool is_free(const masu_labels *l, const struct masu_label_box *box) {
             b->low[1] < box->high[1])
             return false;
     }
+    for (uint32_t i = 0; i < l->line_count; i++)
+        if (crosses(l->lines[i], box)) return false;
     return true;
 }
 

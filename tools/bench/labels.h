@@ -15,10 +15,15 @@ typedef struct masu_labels {
     struct masu_label_box {
         double low[2], high[2]; /* pixels from the lower left corner */
     } boxes[MASU_LABELS_MAX];
+    uint32_t line_count;
+    double lines[MASU_LABELS_MAX][2][2]; /* from and to, pixels */
 } masu_labels;
 
 /* Keeps labels away from a mark at a point of the chart. radius: pixels. */
 void masu_labels_mark(masu_labels *l, const double at[2], double radius);
+
+/* Keeps labels away from a straight line between two points of the chart. */
+void masu_labels_line(masu_labels *l, const double from[2], const double to[2]);
 
 /* Finds room for a line of text next to a point; font: its height in pixels. out: the middle of the
  * text's left edge, in the units of the axes. Returns false if every position beside the point is

@@ -73,12 +73,8 @@ static uint32_t write_numbers(FILE *f, const masu_plot *p, masu_labels *labels) 
     uint32_t count = 0;
     for (uint32_t k = 1; k < p->front_count; k++) {
         const uint32_t a = p->front[k - 1], b = p->front[k];
-        for (int step = 1; step < 12; step++) {
-            const double part = step / 12.0, error = shown_error(&p->rows[a]);
-            const double at[2] = {p->ratios[a] * pow(p->ratios[b] / p->ratios[a], part),
-                                  error * pow(shown_error(&p->rows[b]) / error, part)};
-            masu_labels_mark(labels, at, 2);
-        }
+        masu_labels_line(labels, (const double[]){p->ratios[a], shown_error(&p->rows[a])},
+                         (const double[]){p->ratios[b], shown_error(&p->rows[b])});
     }
     for (uint32_t r = 0; r < p->rung_count; r++) {
         const uint32_t i = p->rungs[r];
@@ -96,32 +92,38 @@ static uint32_t write_numbers(FILE *f, const masu_plot *p, masu_labels *labels) 
     return count;
 }
 
-/* Arrows from the parent to each single technique, then the names that have room. Returns the
- * number of arrows; *named: that of names. */
+/* The row where the arrow of a single technique begins; false: row i has none. */
+static bool arrow_of(const masu_plot *p, uint32_t i, uint32_t *from) {
+    const masu_row *parent = masu_rows_find(p->rows, p->row_count, p->rows[i].parent);
+    if (series_of(&p->rows[i]) < SERIES || !parent || !drawable(p, i)) return false;
+    *from = (uint32_t)(parent - p->rows);
+    return drawable(p, *from);
+}
+
+/* Arrows from the parent to each single technique, then the names that have room beside all arrows.
+ * Returns the number of arrows; *named: that of names. */
 static uint32_t write_arrows(FILE *f, const masu_plot *p, masu_labels *labels, uint32_t *named) {
-    uint32_t count = 0;
-    char *names = NULL;
-    size_t bytes = 0;
-    FILE *n = open_memstream(&names, &bytes);
+    uint32_t count = 0, from;
     *named = 0;
     fprintf(f, "$arrows << EOD\n");
     for (uint32_t i = 0; i < p->row_count; i++) {
-        const masu_row *row = &p->rows[i],
-                       *parent = masu_rows_find(p->rows, p->row_count, row->parent);
-        if (series_of(row) < SERIES || !parent || !drawable(p, i)) continue;
-        uint32_t from = (uint32_t)(parent - p->rows);
-        if (!drawable(p, from)) continue;
-        const char *name =
-            strncmp(row->setting, "scale=", 6) ? row->setting : strchr(row->setting, '+');
-        const double at[2] = {p->ratios[i], shown_error(row)};
-        fprintf(f, "%.9g %.9g %.9g %.9g\n", p->ratios[from], shown_error(parent), at[0], at[1]);
+        if (!arrow_of(p, i, &from)) continue;
+        const double tail[2] = {p->ratios[from], shown_error(&p->rows[from])},
+                     head[2] = {p->ratios[i], shown_error(&p->rows[i])};
+        fprintf(f, "%.9g %.9g %.9g %.9g\n", tail[0], tail[1], head[0], head[1]);
+        masu_labels_line(labels, tail, head);
+        masu_labels_mark(labels, head, 4);
         count++;
-        if (n && is_far(p->ratios[from], shown_error(parent), at[0], at[1]))
-            *named += write_label(n, labels, at, name ? name + (*name == '+') : row->setting, 9);
     }
     fprintf(f, "nan nan nan nan\nEOD\n$names << EOD\n");
-    if (n && !fclose(n)) fwrite(names, 1, bytes, f);
-    free(names);
+    for (uint32_t i = 0; i < p->row_count; i++) {
+        if (!arrow_of(p, i, &from)) continue;
+        const char *setting = p->rows[i].setting,
+                   *name = strncmp(setting, "scale=", 6) ? setting : strchr(setting, '+');
+        const double at[2] = {p->ratios[i], shown_error(&p->rows[i])};
+        if (is_far(p->ratios[from], shown_error(&p->rows[from]), at[0], at[1]))
+            *named += write_label(f, labels, at, name ? name + (*name == '+') : setting, 9);
+    }
     fprintf(f, "EOD\n");
     return count;
 }
@@ -136,8 +138,8 @@ static const char style[] =
     "set ytics nomirror format '%g' add (0.002,0.005,0.02,0.05,0.2,0.5)\n"
     "set ylabel 'mean FLIP against the ground truth, in motion and stationary'\n";
 
-/* The margins that `style` leaves of 960x640 pixels. */
-static const double area[2] = {840, 520};
+/* What the margins leave of 960x640 pixels; the legend of the ladder is beside its chart. */
+static const double area[2] = {840, 520}, ladder_width = 700.8;
 
 /* Explicit ranges, because gnuplot would extend them to powers of ten. The right side has space for
  * names. */
@@ -170,14 +172,17 @@ static void write_commands(FILE *f, const masu_plot *p) {
     write_list(f, "front", p, p->front, p->front_count);
     write_list(f, "rungs", p, p->rungs, p->rung_count);
     masu_labels labels = ranges_of(p);
+    labels.size[0] = ladder_width;
     uint32_t named, numbers = write_numbers(f, p, &labels);
-    labels.count = 0; /* of the other chart */
+    labels.count = labels.line_count = 0; /* of the other chart */
+    labels.size[0] = area[0];
     uint32_t arrows = write_arrows(f, p, &labels, &named);
     fputs(style, f);
     fprintf(f, "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n", labels.low[0], labels.high[0],
             labels.low[1], labels.high[1]);
     fprintf(f, "set xlabel 'time / time of the base setting (%s)'\n", p->clock);
-    fprintf(f, "set output 'front.svg'\nset key top right\n");
+    fprintf(f, "set output 'front.svg'\nset key outside right top\n");
+    fprintf(f, "set rmargin at screen 0.82\n");
     write_title(f, p, "error against time, and the ladder");
     fprintf(f, "plot $front using 1:2 with lines lw 2 lc rgb '#222222' title 'Pareto front', \\\n");
     static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73",
@@ -197,6 +202,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     }
     fprintf(f, "\n");
     fprintf(f, "set output 'techniques.svg'\nset key off\n");
+    fprintf(f, "set rmargin at screen 0.965\n");
     write_title(f, p, "effect of each technique, from the setting without it");
     fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888'");
     if (arrows) {

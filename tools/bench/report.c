@@ -523,11 +523,11 @@ static void put_all(report *r) {
     put_columns(r->page, false);
     for (uint32_t i = 0; i < r->count; i++) put_row(r, i, "", false, is_rung(r, i));
     fputs("</table></div>\n<h2>Skipped settings</h2>\n<div class=\"wide\"><table class=\"sort\">\n"
-          "<tr><th>setting</th><th>reason</th></tr>\n",
+          "<tr><th>setting</th><th class=\"text\">reason</th></tr>\n",
           r->page);
     json_array_foreach(json_object_get(r->sweep, "dropped"), k, one) {
-        masu_markup(r->page, "<tr><td>%s</td><td>%s</td></tr>\n", text_of(one, "setting"),
-                    text_of(one, "why"));
+        masu_markup(r->page, "<tr><td>%s</td><td class=\"text\">%s</td></tr>\n",
+                    text_of(one, "setting"), text_of(one, "why"));
     }
     fputs("</table></div>\n", r->page);
 }

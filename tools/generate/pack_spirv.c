@@ -5,7 +5,7 @@
  * First each module becomes tokens. A table of the operations that shaders use gives the ids and
  * the result of each instruction (section 3 of the SPIR-V specification); an error in it only costs
  * bytes. Then tokens become runs copied from earlier modules, found by chains of positions that
- * start with the same 4 bytes. The result is unpacked and compared before it is written. */
+ * start with the same 8 bytes. The result is unpacked and compared before it is written. */
 #include "device/unpack.h"
 
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEADER = 5, HEADS = 255, LEAST = 4, TRIES = 512, HASH_BITS = 16 };
+enum { HEADER = 5, HEADS = 255, LEAST = 8, TRIES = 512, HASH_BITS = 18 };
 
 /* Bytes that a run must save if it is from elsewhere, and if it follows the last run. Runs of runs
  * cost their bytes again: keeping early modules in few pieces keeps similar modules small. Size of
@@ -312,14 +312,14 @@ static bytes tokens_of(const module *m, const masu_pack *pack) {
 
 /* ---- Runs ------------------------------------------------------------------------------------ */
 
-/* Positions in the pool by the 4 bytes found there, the latest first. */
+/* Positions in the pool by the 8 bytes found there, the latest first. */
 static uint32_t *first_place, *next_place;
 static size_t places, next_room;
 
 static uint32_t hash(const uint8_t *at) {
-    uint32_t v;
+    uint64_t v;
     memcpy(&v, at, sizeof v);
-    return v * 2654435761u >> (32 - HASH_BITS);
+    return (uint32_t)(v * 0x9E3779B97F4A7C15u >> (64 - HASH_BITS));
 }
 
 static void enter_places(const bytes *pool) {
@@ -362,6 +362,10 @@ static int best_run(const bytes *pool, const uint8_t *at, size_t count, size_t e
     if (count < LEAST) return best;
     int tries = TRIES;
     for (uint32_t p = first_place[hash(at)]; p && tries--; p = next_place[p - 1]) {
+        /* A run saves less than its length: it must be at least this long. */
+        if (best > 0 && ((size_t)best + 2 > count || p + (size_t)best >= pool->count ||
+                         pool->at[p + (size_t)best] != at[best + 1]))
+            continue;
         n = alike(pool, p - 1, at, count);
         if (n >= LEAST && gain(n, p - 1, expected) > best) {
             best = gain(n, p - 1, expected);

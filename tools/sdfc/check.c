@@ -52,11 +52,12 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
             q[j] = a[4 * j + cell];
         }
         for (int j = 0; j < i->around; j++) inputs[j] = a[24 + j];
-        const double seed[9] = {a[18], a[19], a[20], q[0], q[1], q[2], a[21], a[22], a[23]};
-        if (i->named == 2)
+        if (i->named == 2) {
             inputs[i->around] = a[18 + (n & 1)];
-        else if (i->named)
+        } else if (i->named) {
+            const double seed[9] = {a[18], a[19], a[20], q[0], q[1], q[2], a[21], a[22], a[23]};
             inputs[i->around] = sdfc_ops[SDFC_cell_seed].run(seed);
+        }
         double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells);
         if (d < least) number = n;
         least = d < least ? d : least;
@@ -76,7 +77,7 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function,
         int count = !calls                  ? sdfc_ops[i->op].operands
                     : i->named || i->around ? SDFC_OPERANDS_MAX
                                             : 12;
-        double a[SDFC_OPERANDS_MAX] = {0}, r = 1e30;
+        double a[SDFC_OPERANDS_MAX], r = 1e30; /* `count` of them: to clear all takes longest */
         for (int j = 0; j < count; j++) {
             a[j] = i->operand[j] >= 0 ? v[i->operand[j]] : c->values[p->args[~i->operand[j]]];
         }

@@ -14,7 +14,9 @@
 #include <stdint.h>
 
 enum {
+    SPIRV_EXTENSION = 10,
     SPIRV_EXT_INST = 12,
+    SPIRV_CAPABILITY = 17,
     SPIRV_NAME = 5,
     SPIRV_MEMBER_NAME = 6,
     SPIRV_TYPE_INT = 21,

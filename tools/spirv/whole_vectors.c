@@ -16,6 +16,8 @@ enum {
     VECTOR_EXTRACT_DYNAMIC = 77
 };
 enum { DECORATION_ROW_MAJOR = 4, DEPTH = 12 };
+enum { RAY_QUERY = 4472, SPIRV_1_0 = 0x00010000, SPIRV_1_3 = 0x00010300, EXTENSION_WORDS = 10 };
+static const char extension[4 * EXTENSION_WORDS] = "SPV_KHR_storage_buffer_storage_class";
 #define ANY 0xFFFFFFFFu
 
 /* Where in its block a pointer points: members of structs by number, elements of arrays as ANY. */
@@ -248,12 +250,42 @@ static void put_load(state *s, const spirv_instruction *i, const chain *c) {
         5);
 }
 
+/* SPIR-V 1.0: of the later versions glslang uses only the storage class StorageBuffer of 1.3, which is
+ * an extension of 1.0. Modules with ray queries keep their version: ray queries need Vulkan 1.1. */
+static bool can_be_1_0(const state *s) {
+    for (size_t k = 0; k < s->m.count; k++) {
+        const spirv_instruction *i = &s->m.list[k];
+        if (i->op == SPIRV_CAPABILITY && i->count > 1 && i->word[1] == RAY_QUERY) return false;
+    }
+    return s->m.words[1] <= SPIRV_1_3;
+}
+
+static bool lacks_extension(const state *s) {
+    bool needed = false;
+    for (size_t k = 0; k < s->m.count; k++) {
+        const spirv_instruction *i = &s->m.list[k];
+        needed |= i->op == SPIRV_TYPE_POINTER && i->word[2] == STORAGE_BUFFER;
+        if (i->op == SPIRV_EXTENSION && i->count == 1 + EXTENSION_WORDS &&
+            !memcmp(i->word + 1, extension, sizeof extension))
+            return false;
+    }
+    return needed;
+}
+
+static void put_extension(state *s) {
+    uint32_t words[1 + EXTENSION_WORDS] = {(1 + EXTENSION_WORDS) << 16 | SPIRV_EXTENSION};
+    memcpy(words + 1, extension, sizeof extension);
+    put(s, words, 1 + EXTENSION_WORDS);
+}
+
 static void write_out(state *s, pointer_type *list) {
     size_t pointers = 0;
     bool inside = false;
+    bool older = can_be_1_0(s), extend = older && lacks_extension(s);
     put(s, s->m.words, 5);
     for (size_t k = 0; k < s->m.count; k++) {
         const spirv_instruction *i = &s->m.list[k];
+        if (extend && i->op != SPIRV_CAPABILITY) put_extension(s), extend = false;
         if (i->op == SPIRV_FUNCTION && !inside) put_pointers(s, list, &pointers);
         inside |= i->op == SPIRV_FUNCTION;
         /* Of a broken module something outside of functions may have a chain's id: the types are
@@ -266,7 +298,9 @@ static void write_out(state *s, pointer_type *list) {
         else
             put(s, i->word, i->count);
     }
-    if (s->out_count <= s->out_room) s->out[3] = s->bound;
+    if (s->out_count > s->out_room) return;
+    s->out[3] = s->bound;
+    if (older) s->out[1] = SPIRV_1_0;
 }
 
 uint32_t *masu_whole_vectors(const uint32_t *words, size_t count, size_t *changed_count) {
@@ -274,7 +308,7 @@ uint32_t *masu_whole_vectors(const uint32_t *words, size_t count, size_t *change
     pointer_type *list = NULL;
     if (!spirv_from_words(words, count, &s.m)) return NULL;
     s.bound = s.m.bound;
-    s.out_room = 4 * s.m.word_count;
+    s.out_room = 4 * s.m.word_count + 1 + EXTENSION_WORDS;
     s.chains = calloc(s.m.bound + 1u, sizeof *s.chains);
     s.groups = calloc(s.m.count, sizeof *s.groups);
     s.wholes = calloc(s.m.count, sizeof *s.wholes);

@@ -23,12 +23,12 @@ typedef struct masu_bake_result {
     int code;
 } masu_bake_result;
 
-/* 1: built with the address sanitizer, whose shadow memory needs many TiB of address space. gcc
- * and clang define different macros. */
-#if defined(__SANITIZE_ADDRESS__)
+/* 1: built with the address or thread sanitizer, whose shadow memory needs many TiB of address
+ * space. gcc and clang define different macros. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define MASU_BAKE_SANITIZED 1
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define MASU_BAKE_SANITIZED 1
 #endif
 #endif

@@ -372,9 +372,8 @@ static void fit_primitive(masu_bake_content *content, uint32_t instance,
         return;
     }
     corners c = {.count = primitive->index_count};
-    c.at = malloc((c.count + 1) * sizeof *c.at);
-    c.part = malloc((c.count + 1) * sizeof *c.part);
-    if (!c.at || !c.part) abort();
+    c.at = masu_bake_allocate(c.count * sizeof *c.at);
+    c.part = masu_bake_allocate(c.count * sizeof *c.part);
     for (size_t i = 0; i < c.count; i++) {
         uint32_t index = MASU_BAKE_INDICES(content)[primitive->first_index + i];
         const masu_blob_vertex *vertex =

@@ -378,7 +378,7 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                     "-o",
                                     p->optimised,
                                     NULL};
-    const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.1", p->optimised, NULL};
+    const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.0", p->optimised, NULL};
     const struct {
         const char *const *arguments;
         const char *package;
