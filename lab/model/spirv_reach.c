@@ -244,8 +244,8 @@ bool masu_spirv_reach(const spirv_module *m, const VkSpecializationInfo *special
 /* ---- Cost ------------------------------------------------------------------------------------ */
 
 /* Mesa unrolls a loop of at most 32 iterations if its copies stay below 832 of its own instructions
- * (nir_opt_loop_unroll), two to three per operation. Of the loops of mirrors, wet_city and engine,
- * none below this limit and with one exit remains in the code for Iris Xe. Some above do not
+ * (nir_opt_loop_unroll), two to three per operation. Of the loops of mirrors, the numbers that remain
+ * in the code for Iris Xe agree with this limit. Some above do not
  * either: they count once, which overestimates their pass. */
 enum { UNROLLED_ITERATIONS = 32, UNROLLED_OPERATIONS = 320 };
 
