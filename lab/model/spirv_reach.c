@@ -244,9 +244,9 @@ bool masu_spirv_reach(const spirv_module *m, const VkSpecializationInfo *special
 /* ---- Cost ------------------------------------------------------------------------------------ */
 
 /* Mesa unrolls a loop of at most 32 iterations if its copies stay below 832 of its own instructions
- * (nir_opt_loop_unroll), two to three per operation. Of the loops of mirrors, the numbers that remain
- * in the code for Iris Xe agree with this limit. Some above do not
- * either: they count once, which overestimates their pass. */
+ * (nir_opt_loop_unroll), two to three per operation. The numbers of loops of mirrors that remain in
+ * the code for Iris Xe agree with this limit. Some loops above it are unrolled too: they count
+ * once, which overestimates their pass. */
 enum { UNROLLED_ITERATIONS = 32, UNROLLED_OPERATIONS = 320 };
 
 static bool integer(const spirv_module *m, uint32_t id, int64_t *out) {
@@ -317,7 +317,8 @@ static masu_spirv_cost cost_between(const spirv_module *m, const bool *inside, s
         bool inner = false;
         masu_spirv_cost body = cost_between(m, inside, k + 1, end, &inner);
         int64_t times = inner ? 0 : iterations(m, &m->list[loop + 1]);
-        bool unrolled = times > 0 && has_one_exit(m, m->list[loop].word[1], k, end) && times <= UNROLLED_ITERATIONS &&
+        bool unrolled = times > 0 && has_one_exit(m, m->list[loop].word[1], k, end) &&
+                        times <= UNROLLED_ITERATIONS &&
                         times * body.plain <= UNROLLED_OPERATIONS;
         if (!unrolled) *rolled = true;
         sum.plain += body.plain * (unrolled ? (uint32_t)times : 1u);
