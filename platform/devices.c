@@ -78,8 +78,8 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
 static VKAPI_ATTR void VKAPI_CALL get_core_features(VkPhysicalDevice device,
                                                     VkPhysicalDeviceFeatures *out) {
     vkGetPhysicalDeviceFeatures(device, out);
-    const masu_device_row *row = imposed_row();
-    if (row) masu_device_row_deny(row, out);
+    const masu_device_row *imposed = imposed_row;
+    if (imposed) masu_device_row_deny(imposed, out);
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *n,
