@@ -78,6 +78,7 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
 static VKAPI_ATTR void VKAPI_CALL get_core_features(VkPhysicalDevice device,
                                                     VkPhysicalDeviceFeatures *out) {
     vkGetPhysicalDeviceFeatures(device, out);
+    const masu_device_row *imposed = imposed_row;
     if (imposed) masu_device_row_deny(imposed, out);
 }
 

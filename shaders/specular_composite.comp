@@ -59,48 +59,62 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_HDR + 1, rgba16f) uniform image2D 
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
 
+/* The texels around a pixel. */
+struct gathering {
+    ivec2 corner, last; /* upper left texel; last of the image */
+    vec2 part;          /* of a texel, from the corner's centre */
+    masu_flat plane;    /* of the pixel */
+    vec3 n;
+    float narrow;       /* 1 / tolerance of distances from the plane */
+    vec4 sum, nearest;  /* weighted; of the texel with the lowest cost */
+    float least, most;  /* that cost; brightest channel of texels with a relevant weight */
+};
+
+/* Adds one of the four texels. A function that is called four times, not a loop: the cost model
+ * counts an unrolled loop of this size as if each iteration ran all copies
+ * (lab/model/spirv_reach.c). */
+void gather(inout gathering s, ivec2 off)
+{
+    ivec2 texel = clamp(s.corner + off, ivec2(0), s.last);
+    masu_guide g = masu_unpack_guide(texelFetch(guide_image, texel, 0).rg);
+    if (!g.there) {
+        return;
+    }
+    vec3 color = masu_sane(texelFetch(specular_image, texel, 0).rgb, 0.0, 65504.0);
+    float away = abs(masu_off(s.plane, masu_guide_place(uvec2(texel), g.pixel, 2u), g.depth)) * s.narrow;
+    float alike = max(dot(g.normal, s.n), 0.0);
+    alike *= alike;
+    alike *= alike;
+    float bilinear = mix(1.0 - s.part.x, s.part.x, float(off.x)) *
+                     mix(1.0 - s.part.y, s.part.y, float(off.y));
+    float weight = (bilinear + 1e-3) * alike * masu_exp2(-away * away);
+    float cost = away + 4.0 * (1.0 - alike);
+    s.sum += weight * vec4(color, 1.0);
+    s.most = max(s.most, weight > 1e-4 ? max(color.r, max(color.g, color.b)) : 0.0);
+    if (cost < s.least) {
+        s.least = cost;
+        s.nearest = vec4(color, 1.0);
+    }
+}
+
 /* Radiance that a pixel's lobe gathers; a: 0 if no texel is usable. most: brightest channel of
  * texels with a relevant weight. */
 vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
 {
     vec2 place = (vec2(at) - 0.5) * 0.5; /* a texel and its four pixels share a centre */
     vec2 corner = floor(place);
-    vec2 part = place - corner;
-    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float z = frame.forward.w * masu_rcp(depth);
     /* A texel is two pixels wide: a point that is off the plane by half of that is another
      * surface. */
     float tolerance = z * frame.up.w * 2.0 / float(pc.render_height);
-    vec4 sum = vec4(0.0);
-    vec4 nearest = vec4(0.0);
-    float least = 1e30;
-    most = 0.0;
-    masu_flat flat_here = masu_flat_through(point, n);
-    float narrow = 1.0 / tolerance;
-    for (int k = 0; k < 4; k++) {
-        ivec2 off = ivec2(k & 1, k >> 1);
-        ivec2 texel = clamp(ivec2(corner) + off, ivec2(0), last);
-        masu_guide g = masu_unpack_guide(texelFetch(guide_image, texel, 0).rg);
-        if (!g.there) {
-            continue;
-        }
-        vec3 color = masu_sane(texelFetch(specular_image, texel, 0).rgb, 0.0, 65504.0);
-        float away = abs(masu_off(flat_here, masu_guide_place(uvec2(texel), g.pixel, 2u), g.depth)) * narrow;
-        float alike = max(dot(g.normal, n), 0.0);
-        alike *= alike;
-        alike *= alike;
-        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) *
-                         mix(1.0 - part.y, part.y, float(off.y));
-        float weight = (bilinear + 1e-3) * alike * masu_exp2(-away * away);
-        float cost = away + 4.0 * (1.0 - alike);
-        sum += weight * vec4(color, 1.0);
-        most = max(most, weight > 1e-4 ? max(color.r, max(color.g, color.b)) : 0.0);
-        if (cost < least) {
-            least = cost;
-            nearest = vec4(color, 1.0);
-        }
-    }
-    return sum.a > 1e-3 ? vec4(sum.rgb / sum.a, 1.0) : nearest;
+    gathering s = gathering(ivec2(corner), ivec2(pc.output_width, pc.output_height) - 1, place - corner,
+                            masu_flat_through(point, n), n, 1.0 / tolerance, vec4(0.0), vec4(0.0), 1e30, 0.0);
+    gather(s, ivec2(0, 0));
+    gather(s, ivec2(1, 0));
+    gather(s, ivec2(0, 1));
+    gather(s, ivec2(1, 1));
+    most = s.most;
+    return s.sum.a > 1e-3 ? vec4(s.sum.rgb / s.sum.a, 1.0) : s.nearest;
 }
 
 #ifdef MASU_RESOLVED

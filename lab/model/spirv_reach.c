@@ -241,20 +241,101 @@ bool masu_spirv_reach(const spirv_module *m, const VkSpecializationInfo *special
     return good;
 }
 
+/* ---- Cost ------------------------------------------------------------------------------------ */
+
+/* Mesa unrolls a loop of at most 32 iterations if its copies stay below 832 of its own instructions
+ * (nir_opt_loop_unroll), two to three per operation. The numbers of loops of mirrors that remain in
+ * the code for Iris Xe agree with this limit. Some loops above it are unrolled too: they count
+ * once, which overestimates their pass. */
+enum { UNROLLED_ITERATIONS = 32, UNROLLED_OPERATIONS = 320 };
+
+static bool integer(const spirv_module *m, uint32_t id, int64_t *out) {
+    const spirv_instruction *d = spirv_def(m, id);
+    if (!d || d->op != SPIRV_CONSTANT || d->count != 4) return false;
+    *out = (int32_t)d->word[3];
+    return true;
+}
+
+/* Iterations of the loop `for (i = first; i < end; i += step)` of constants, whose condition is the
+ * one of branch b; 0: another loop. */
+static int64_t iterations(const spirv_module *m, const spirv_instruction *b) {
+    const spirv_instruction *less = spirv_def(m, b->word[1]);
+    if (b->op != SPIRV_BRANCH_CONDITIONAL || !less ||
+        (less->op != SPIRV_S_LESS_THAN && less->op != SPIRV_U_LESS_THAN))
+        return 0;
+    const spirv_instruction *i = spirv_def(m, less->word[3]);
+    int64_t first, end, step;
+    if (!i || i->op != SPIRV_PHI || i->count != 7 || !integer(m, less->word[4], &end)) return 0;
+    bool constant_first = integer(m, i->word[3], &first);
+    if (!constant_first && !integer(m, i->word[5], &first)) return 0;
+    const spirv_instruction *next = spirv_def(m, i->word[constant_first ? 5 : 3]);
+    if (!next || next->op != SPIRV_I_ADD || next->word[3] != i->word[2] ||
+        !integer(m, next->word[4], &step) || step <= 0 || end <= first)
+        return 0;
+    return (end - first + step - 1) / step;
+}
+
+/* The merge instruction of the loop that starts with the block of label k; 0: no loop does. */
+static size_t loop_of(const spirv_module *m, size_t k) {
+    while (++k < m->count && m->list[k].op != SPIRV_LABEL) {
+        if (m->list[k].op == SPIRV_LOOP_MERGE) return k;
+    }
+    return 0;
+}
+
+/* Whether only the condition of the loop between its header and its merge block, from..to - 1,
+ * leaves it. */
+static bool has_one_exit(const spirv_module *m, uint32_t merge, size_t from, size_t to) {
+    uint32_t exits = 0;
+    for (size_t k = from; k < to; k++) {
+        const spirv_instruction *i = &m->list[k];
+        if (i->op == SPIRV_BRANCH) exits += i->word[1] == merge;
+        if (i->op == SPIRV_BRANCH_CONDITIONAL)
+            exits += i->word[2] == merge || i->word[3] == merge;
+    }
+    return exits == 1;
+}
+
+/* Cost of the instructions from..to - 1, the bodies of unrolled loops once per iteration. rolled:
+ * set if a loop remains. Blocks of a loop are between its header and its merge block. */
+static masu_spirv_cost cost_between(const spirv_module *m, const bool *inside, size_t from,
+                                    size_t to, bool *rolled) {
+    masu_spirv_cost sum = {0, 0};
+    for (size_t k = from; k < to; k++) {
+        size_t loop = inside[k] && m->list[k].op == SPIRV_LABEL ? loop_of(m, k) : 0;
+        if (!loop || loop + 1 >= to) {
+            if (!inside[k]) continue;
+            masu_spirv_cost one = masu_spirv_cost_of(m, &m->list[k]);
+            sum.plain += one.plain;
+            sum.weighted += one.weighted;
+            continue;
+        }
+        size_t end = k + 1;
+        while (end < to && !(m->list[end].op == SPIRV_LABEL &&
+                             m->list[end].word[1] == m->list[loop].word[1]))
+            end++;
+        bool inner = false;
+        masu_spirv_cost body = cost_between(m, inside, k + 1, end, &inner);
+        int64_t times = inner ? 0 : iterations(m, &m->list[loop + 1]);
+        bool unrolled = times > 0 && has_one_exit(m, m->list[loop].word[1], k, end) &&
+                        times <= UNROLLED_ITERATIONS &&
+                        times * body.plain <= UNROLLED_OPERATIONS;
+        if (!unrolled) *rolled = true;
+        sum.plain += body.plain * (unrolled ? (uint32_t)times : 1u);
+        sum.weighted += body.weighted * (unrolled ? (uint32_t)times : 1u);
+        k = end - 1;
+    }
+    return sum;
+}
+
 masu_spirv_cost masu_spirv_cost_reached(const spirv_module *m,
                                         const VkSpecializationInfo *special) {
-    masu_spirv_cost sum = {0, 0};
-    bool *inside = calloc(m->count ? m->count : 1, sizeof *inside);
+    bool *inside = calloc(m->count ? m->count : 1, sizeof *inside), rolled = false;
     if (!inside || !masu_spirv_reach(m, special, inside)) {
         free(inside);
         return masu_spirv_cost_straight(m);
     }
-    for (size_t k = 0; k < m->count; k++) {
-        if (!inside[k]) continue;
-        masu_spirv_cost one = masu_spirv_cost_of(m, &m->list[k]);
-        sum.plain += one.plain;
-        sum.weighted += one.weighted;
-    }
+    masu_spirv_cost sum = cost_between(m, inside, 0, m->count, &rolled);
     free(inside);
     return sum;
 }

@@ -109,12 +109,16 @@ vec3 masu_found_light(uint word)
     return uintBitsToFloat((uvec3(word << 18, word << 9, word) & 0x7FC0000u) | 0x38000000u);
 }
 
-/* Clamps light to the limits of `found`, and the number of samples in a to the limit of the
- * weight. */
-vec4 masu_found_held(uvec2 found, vec4 light)
+/* Clamps light to the limits of `found`. */
+vec3 masu_found_held(uvec2 found, vec3 light)
 {
-    float count = uintBitsToFloat((found.x >> 27 << 21) + 0x3E000000u);
-    return vec4(clamp(light.rgb, masu_found_light(found.x), masu_found_light(found.y)), min(abs(light.a), count));
+    return clamp(light, masu_found_light(found.x), masu_found_light(found.y));
+}
+
+/* Limit of the weight of a history that was found, in samples. */
+float masu_found_count(uvec2 found)
+{
+    return uintBitsToFloat((found.x >> 27 << 21) + 0x3E000000u);
 }
 
 #endif

@@ -68,25 +68,33 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
      * as Direct3D requires. A texelFetch would cost a seventh more of this pass by the estimate of
      * Intel's compiler. */
     vec2 before = middle;
-    if (!masu_has_stayed(found)) {
+    bool stays = masu_has_stayed(found);
+    if (!stays) {
         /* One fetch serves both cases: another texel is read at its centre. Two fetches cost a
          * sixth more of this pass by Intel's estimate. Texels outside of the image must not be
          * read, even with a weight of 0, since they may be NaN. */
         vec2 beside = min(vec2(texel + masu_found_beside(found)), vec2(push.last_x, push.last_y));
         vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) * vec2(push.moved_x, push.moved_y);
-        vec2 moved = textureLod(velocity_image, uv, 0.0).xy;
-        before += (masu_is_missed(found) ? masu_thin_motion(masu_thin_of(found))
-                                         : moved + frame.shifts.zw) * steps;
+        vec2 moved = textureLod(velocity_image, uv, 0.0).xy + frame.shifts.zw;
+        if (masu_is_missed(found)) {
+            moved = masu_thin_motion(masu_thin_of(found));
+        }
+        before += moved * steps;
     }
     masu_past old = masu_history_at(before);
-    old.mean.a = masu_mean_count(old.mean);
+    float count = masu_mean_count(old.mean);
     /* Undefined content would remain visible for many frames. It shows as more samples than a frame
      * stores, as NaN, or as more light than the cubic filter makes of 0..1 (the last two cannot
      * occur in unorm images): the pixel starts over. */
-    bool stored = old.mean.a <= masu_mean_most &&
-                  (!masu_half_means || abs(old.mean.r) + abs(old.mean.g) + abs(old.mean.b) <= 6.0);
-    old.mean = stored ? masu_found_held(found, old.mean) : vec4(0.0);
-    old.curve = stored || !masu_half_means ? old.curve : vec3(0.0);
+    bool stored = count <= masu_mean_most;
+    if (masu_half_means && !(stored && abs(old.mean.r) + abs(old.mean.g) + abs(old.mean.b) <= 6.0)) {
+        stored = false;
+        old.mean.rgb = old.curve = vec3(0.0);
+    }
+    if (!stays) {
+        old.mean.rgb = masu_found_held(found, old.mean.rgb);
+    }
+    old.mean.a = stored ? min(abs(count), masu_found_count(found)) : 0.0;
     return old;
 }
 
@@ -103,6 +111,7 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
  * not sharpened, because that would accumulate over frames. */
 void masu_show(ivec2 at, vec3 light, float count, masu_past old, bool stays, uint chance)
 {
+    light = clamp(light, 0.0, 1.0);
     float moving = (frame.temporal.z & MASU_TEMPORAL_MOVES) != 0u ? push.moving : masu_sharpen;
     vec3 sharp = light + (stays ? push.calm : moving) * old.mean.a * (1.0 / max(count, 1.0)) * old.curve;
 #if defined(MASU_TEN) || defined(MASU_DEEP) /* the store does not clamp */

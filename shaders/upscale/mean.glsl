@@ -37,8 +37,8 @@ uint masu_chance(uvec2 at)
     return at.x * masu_chance_step.x + at.y * masu_chance_step.y + frame.history.x * 0x9E3779u;
 }
 
-/* light: 0 to 1; as half floats NaN, infinities and values above 1 become 1, as unorm anything.
- * chance: of its pixel; only its last 24 bits are used. */
+/* light: 0 to 1; as half floats NaN, infinities and values above 1 become 1. chance: of its pixel;
+ * only its last 24 bits are used. */
 uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
 {
     if (masu_half_means) {
@@ -46,9 +46,14 @@ uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
         vec3 rounded = uintBitsToFloat((bits + (chance >> 11 & 0x1FFFu)) & 0xFFFFE000u);
         return uvec4(packHalf2x16(rounded.rg), packHalf2x16(vec2(rounded.b, count)), 0u, 0u);
     }
-    float off = float(chance >> 16 & 0xFFu) * (1.0 / (256.0 * 65535.0)) - 127.5 / (256.0 * 65535.0);
-    vec3 rounded = light + off;
-    return uvec4(packUnorm2x16(rounded.rg), packUnorm2x16(vec2(rounded.b, count * (1.0 / masu_mean_counts))), 0u, 0u);
+    /* Added to 3 * 2^22, a number has its rounded integer in its last 16 bits: half the
+     * instructions of packUnorm2x16. */
+    float off = float(chance >> 16 & 0xFFu) * (1.0 / 256.0) - 0.5; /* below 1/2: 65535 must not
+                                                                    * become 65536 */
+    precise vec4 steps = vec4(light * 65535.0 + off, count * (65535.0 / masu_mean_counts));
+    precise vec4 whole = steps + 12582912.0; /* not merged with the constant of `off` */
+    uvec4 bits = floatBitsToUint(whole);
+    return uvec4(bits.xz & 0xFFFFu | bits.yw << 16, 0u, 0u);
 }
 
 /* Number of samples in a sampled mean. */

@@ -110,7 +110,7 @@ static void what_constants_leave_out_is_not_counted(void **state) {
                    "b); }\n"                                       /* 4; 8 */
                    "    if (!on && n > 3u) { a.x = exp2(a.x); }\n" /* 1, 1 to test; a PHI */
                    "    switch (kind) { case 7u: a *= a; break; default: a.x *= 2.0; }\n" /* 4; 1 */
-                   "    for (uint i = 0u; i < 4u; i++) { b += 1.0; if (kind == 9u) { b *= 3.0; } "
+                   "    for (uint i = 0u; i < n; i++) { b += 1.0; if (kind == 9u) { b *= 3.0; } "
                    "}\n" /* 4, and the loop's; 4 */
                    "}\n";
     static const struct {
@@ -139,6 +139,44 @@ static void what_constants_leave_out_is_not_counted(void **state) {
     VkSpecializationInfo other = {1, &(VkSpecializationMapEntry){4, 0, 4}, 4, &(uint32_t){0}};
     assert_int_equal(masu_spirv_cost_reached(&m, &other).plain, base + cases[0].counts);
     spirv_free(&m);
+}
+
+/* Operations of one loop. */
+static uint32_t loop_cost(const char *loop) {
+    char source[512], command[2048];
+    spirv_module m;
+    snprintf(source, sizeof source,
+             "#version 440\n"
+             "layout(local_size_x = 1) in;\n"
+             "layout(set = 0, binding = 0) buffer block { vec4 a, b; uint n; };\n"
+             "void main() { vec4 c = a; %s b = c; }\n",
+             loop);
+    const char *text = write_text("loop.comp", source);
+    snprintf(command, sizeof command,
+             "glslangValidator --quiet -V --target-env vulkan1.1 -o %s.spv %s && "
+             "spirv-opt --target-env=vulkan1.1 -O %s.spv -o %s.spv",
+             text, text, text, text);
+    assert_int_equal(system(command), 0);
+    snprintf(command, sizeof command, "%s.spv", text);
+    assert_true(spirv_from_file(command, &m));
+    uint32_t plain = masu_spirv_cost_reached(&m, NULL).plain;
+    spirv_free(&m);
+    return plain;
+}
+
+/* A loop that compilers unroll counts once per iteration; one of unknown or many iterations, with
+ * many operations, or with another exit counts once. An iteration has 4 products, a comparison and
+ * an addition. */
+static void a_loop_that_compilers_unroll_counts_per_iteration(void **state) {
+    (void)state;
+    assert_int_equal(loop_cost("for (uint i = 0u; i < n; i++) c *= a;"), 6);
+    assert_int_equal(loop_cost("for (uint i = 0u; i < 4u; i++) c *= a;"), 4 * 6);
+    assert_int_equal(loop_cost("for (int i = 3; i < 12; i += 2) c *= a;"), 5 * 6);
+    assert_int_equal(loop_cost("for (uint i = 0u; i < 32u; i++) c *= a;"), 32 * 6);
+    assert_int_equal(loop_cost("for (uint i = 0u; i < 33u; i++) c *= a;"), 6);
+    assert_int_equal(loop_cost("for (uint i = 0u; i < 32u; i++) c = sqrt(c) * a;"), 32 * 10);
+    assert_int_equal(loop_cost("for (uint i = 0u; i < 32u; i++) c = sqrt(sqrt(c)) * a;"), 14);
+    assert_int_equal(loop_cost("for (uint i = 0u; i < 4u; i++) { c *= a; if (c.x > 1.0) break; }"), 7);
 }
 
 /* By hand, EASU with debug.exact costs 794, without locating and bounding the pixel, plus 14 for
@@ -399,6 +437,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(costs_are_those_counted_by_hand),
         cmocka_unit_test(what_constants_leave_out_is_not_counted),
+        cmocka_unit_test(a_loop_that_compilers_unroll_counts_per_iteration),
         cmocka_unit_test(easu_costs_about_what_was_counted_by_hand),
         cmocka_unit_test(a_counted_shader_is_a_valid_one_that_counts_each_access),
         cmocka_unit_test(the_sheet_has_the_numbers_worked_out_by_hand),
