@@ -69,7 +69,7 @@ DOCUMENTS := README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE $(wi
 DOCUMENTS += docs/report/ladders.txt
 # The examples with what they are compiled from, next to the documents that link to them.
 EXAMPLE_FILES := $(wildcard examples/*.[ch] examples/*.cpp examples/*.lua examples/*.frag examples/*.vert examples/shared/*.[ch] examples/drive/*.[ch])
-EXAMPLE_HOST  := $(foreach f,atomic_file file_kind headless headless_image image image_parts exr,$(wildcard platform/$(f).[ch]))
+EXAMPLE_HOST  := $(foreach f,atomic_file file_kind headless headless_image image image_parts image_write exr,$(wildcard platform/$(f).[ch]))
 EXAMPLE_SPIRV := $(MADE)/gen/host_pass_frag.spv.h $(MADE)/gen/host_pass_vert.spv.h
 # What masu conform takes besides itself. Baking takes minutes and is nobody's surprise: scenes are installed
 # that are there.

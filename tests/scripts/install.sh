@@ -52,7 +52,7 @@ $(for f in examples/*.[ch] examples/*.cpp examples/*.lua examples/*.frag example
     examples/Makefile examples/host_pass_frag.spv.h examples/host_pass_vert.spv.h; do
     echo ".$prefix/share/doc/masu/$f"
 done)
-$(for f in atomic_file file_kind headless headless_image image image_parts exr; do
+$(for f in atomic_file file_kind headless headless_image image image_parts image_write exr; do
     for e in c h; do [ ! -f platform/$f.$e ] || echo ".$prefix/share/doc/masu/examples/platform/$f.$e"; done
 done)
 $(for p in masu masu-bake masu-meso masu-sdfc ${view:+masu-view}; do
