@@ -236,13 +236,11 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
     uint waiting = 0u; /* pending instances of a node: packed as in masu_trace_stack */
     uint waiting_item = 0u;
     int depth = 0;
-    /* Each turn of the three loops visits a node: the count of visits ends them, and no loop keeps a
-     * counter in a register. */
-    for (; visits < uint(MASU_TRACE_VISITS);) {
+    for (int i = 0; i < MASU_TRACE_VISITS; i++) {
         /* Recomputed each time: kept, it would take registers from the mesh loop. */
         masu_trace_ray world = masu_trace_prepare(origin, direction);
-        for (; visits < uint(MASU_TRACE_VISITS);) {
-            if (waiting != 0u || !top_going) break;
+        for (int k = 0; k < MASU_TRACE_VISITS; k++) {
+            if (waiting != 0u || !top_going || visits >= uint(MASU_TRACE_VISITS)) break;
             uint at = 1u + top_node * uint(MASU_TRACE_NODE_UVEC4);
             uvec4 a = masu_trace_frame[at], b = masu_trace_frame[at + 1u];
             uvec4 c = masu_trace_frame[at + 2u];
@@ -284,10 +282,11 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
         uint node = about.x, rest = 0u;
         int bottom = depth;
         bool going = true;
-        for (; going && visits < uint(MASU_TRACE_VISITS);) {
+        for (int m = 0; m < MASU_TRACE_VISITS; m++) {
+            if (!going || visits >= uint(MASU_TRACE_VISITS)) break;
             uint items = 0u, item = 0u;
-            for (; visits < uint(MASU_TRACE_VISITS);) {
-                if (items != 0u || !going) break;
+            for (int k = 0; k < MASU_TRACE_VISITS; k++) {
+                if (items != 0u || !going || visits >= uint(MASU_TRACE_VISITS)) break;
                 uint n = 1u + node * uint(MASU_TRACE_NODE_UVEC4);
                 uvec4 a = masu_trace_static[n], b = masu_trace_static[n + 1u];
                 uvec4 c = masu_trace_static[n + 2u];
