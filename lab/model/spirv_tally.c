@@ -25,6 +25,7 @@ enum {
     STORAGE_BUFFER = 12,
     EARLY_FRAGMENT_TESTS = 9,
     DEPTH_REPLACING = 12,
+    VERSION_1_3 = 0x10300,
     VERSION_1_4 = 0x10400
 };
 
@@ -331,10 +332,24 @@ static void put_entry(maker *k, const spirv_instruction *one) {
     for (uint32_t n = 0; n < more; n++) put(&k->to, n ? k->variable[n - 1] : k->buffer);
 }
 
+/* A module of SPIR-V 1.0 without storage buffers gets the extension for the buffer of the counts. */
+static bool lacks_extension(const spirv_module *m) {
+    bool lacks = m->words[1] < VERSION_1_3;
+    for (size_t i = 0; i < m->count; i++) lacks &= m->list[i].op != SPIRV_EXTENSION;
+    return lacks;
+}
+
+static void put_extension(maker *k) {
+    static const char name[4 * SPIRV_STORAGE_EXTENSION_WORDS] = SPIRV_STORAGE_EXTENSION;
+    uint32_t words[SPIRV_STORAGE_EXTENSION_WORDS];
+    memcpy(words, name, sizeof words);
+    put_op(&k->to, SPIRV_EXTENSION, SPIRV_STORAGE_EXTENSION_WORDS, words);
+}
+
 static bool make(maker *k, sums *all) {
     const spirv_module *m = k->m;
     size_t first_type, first_function;
-    bool early = false;
+    bool early = false, extend = lacks_extension(m);
     look(k, &first_type, &first_function, &early);
     if (!k->function || first_function == m->count) return false;
     bool own_uint = !k->uint_type;
@@ -357,6 +372,7 @@ static bool make(maker *k, sums *all) {
     for (uint32_t w = 0; w < 5; w++) put(&k->to, m->words[w]);
     for (size_t i = 0; i < first_function; i++) {
         const spirv_instruction *one = &m->list[i];
+        if (extend && one->op != SPIRV_CAPABILITY) put_extension(k), extend = false;
         if (i == first_type) put_annotations(k, array, block);
         if (one->op == OP_ENTRY_POINT) {
             put_entry(k, one);

@@ -75,6 +75,10 @@ enum {
     SPIRV_DECORATION_OFFSET = 35
 };
 
+/* Lets SPIR-V before 1.3 have storage buffers; 40 bytes with its zeros. */
+#define SPIRV_STORAGE_EXTENSION "SPV_KHR_storage_buffer_storage_class"
+enum { SPIRV_STORAGE_EXTENSION_WORDS = 10 };
+
 typedef struct spirv_instruction {
     uint32_t op, count;   /* words, the first included */
     const uint32_t *word; /* word[0] is op and count */

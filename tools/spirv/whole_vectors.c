@@ -16,8 +16,9 @@ enum {
     VECTOR_EXTRACT_DYNAMIC = 77
 };
 enum { DECORATION_ROW_MAJOR = 4, DEPTH = 12 };
-enum { RAY_QUERY = 4472, SPIRV_1_0 = 0x00010000, SPIRV_1_3 = 0x00010300, EXTENSION_WORDS = 10 };
-static const char extension[4 * EXTENSION_WORDS] = "SPV_KHR_storage_buffer_storage_class";
+enum { RAY_QUERY = 4472, SPIRV_1_0 = 0x00010000, SPIRV_1_3 = 0x00010300 };
+#define EXTENSION_WORDS SPIRV_STORAGE_EXTENSION_WORDS
+static const char extension[4 * EXTENSION_WORDS] = SPIRV_STORAGE_EXTENSION;
 #define ANY 0xFFFFFFFFu
 
 /* Where in its block a pointer points: members of structs by number, elements of arrays as ANY. */
