@@ -1,7 +1,7 @@
 #!/bin/bash
 # threads.sh: what runs in threads, under the thread sanitizer (make threads): four renderers on each of $DRIVERS,
 # masu-bake with probes and textures, the double-precision field of masu bench. Drivers and libraries are not
-# instrumented: tests/tsan.supp says what is not looked at. Exit 1: a report, or another failure.
+# instrumented: tests/tsan.supp lists the libraries that are not checked. Exit 1: a report, or another failure.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 build=$(realpath "${BUILD:-build/thread}")

@@ -178,8 +178,9 @@ static const char extension[40] = "SPV_KHR_storage_buffer_storage_class";
 /* A module with one resource, of this class, in set and binding. */
 static uint32_t resource_module(uint32_t *words, uint32_t set, uint32_t binding, uint32_t class) {
     static const uint32_t storage[] = {0, 2, 12, 0, 0, 9};
-    uint32_t head[] = {0x07230203u, 0x00010000u, 0, 16, 0, OP(2, 17), 1, OP(11, 10), [18] = OP(3, 14),
-                       0, 1, OP(5, 15), 5, 1, 0x6E69616Du, 0, OP(6, 16), 1, 17, 8, 8, 1};
+    uint32_t head[] = {0x07230203u, 0x00010000u, 0, 16, 0, OP(2, 17), 1, OP(11, 10),
+                       [18] = OP(3, 14), 0, 1, OP(5, 15), 5, 1, 0x6E69616Du, 0,
+                       OP(6, 16), 1, 17, 8, 8, 1};
     const uint32_t globals[] = {OP(5, 72),
                                 8,
                                 0,

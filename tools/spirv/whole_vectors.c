@@ -251,7 +251,7 @@ static void put_load(state *s, const spirv_instruction *i, const chain *c) {
         5);
 }
 
-/* SPIR-V 1.0: of the later versions glslang uses only the storage class StorageBuffer of 1.3, which is
+/* glslang uses only one part of SPIR-V after 1.0: the storage class StorageBuffer of 1.3, which is
  * an extension of 1.0. Modules with ray queries keep their version: ray queries need Vulkan 1.1. */
 static bool can_be_1_0(const state *s) {
     for (size_t k = 0; k < s->m.count; k++) {

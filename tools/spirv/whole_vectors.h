@@ -1,5 +1,5 @@
-/* whole_vectors.h: loads of single components of vectors in buffers become loads of the vectors, and the
- * module becomes SPIR-V 1.0, so that Vulkan 1.0 devices accept it.
+/* whole_vectors.h: loads of single components of vectors in buffers become loads of the vectors,
+ * and the module becomes SPIR-V 1.0, so that Vulkan 1.0 devices accept it.
  *
  * Where a shader reads more than one component of a vector in a uniform or storage block, or a
  * component and the vector, each component is read by an access chain of its own. Turnip of Mesa
