@@ -80,7 +80,8 @@ ifeq ($(config),sanitize)
 $(foreach f,examples src platform tests/fuzz tests/unit $(addprefix tools/,bench cli command conform masu measure meso \
     metric settings spirv view) $(addprefix tools/bake/,base build description import write), \
     $(BUILD)/obj/$(f)/%.o): FOLDER_FLAGS += -O0
-$(BUILD)/obj/tests/unit/test_bake_%.o: FOLDER_FLAGS += -O1
+$(BUILD)/obj/tests/unit/test_bake_%.o $(addprefix $(BUILD)/obj/src/scene/,reader.o check_code.o blob_section.o): \
+    FOLDER_FLAGS += -O1
 endif
 
 # ---- Rules ---------------------------------------------------------------------------------------

@@ -14,7 +14,10 @@ static double alpha_of(double roughness) {
     double r = roughness > MASU_TABLE_SMOOTHEST ? roughness : MASU_TABLE_SMOOTHEST;
     return r * r;
 }
-static double power5(double cosine) { return pow(1 - unit_range(cosine), 5); }
+static double power5(double cosine) {
+    double x = 1 - unit_range(cosine);
+    return x * x * (x * x) * x;
+}
 
 static double lambda(double alpha, double mu) {
     double tangent2 = (1 - mu * mu) / (mu * mu);

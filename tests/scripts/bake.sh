@@ -96,7 +96,8 @@ refuses 1 'cannot read .*empty.glb' "$folder/empty.glb" "${x[@]}"
 refuses 1 'empty.json:1:' "$folder/empty.json" "${x[@]}"
 head -c 3000 /dev/urandom > "$folder/noise.glb"
 refuses 1 'cannot read .*noise.glb' "$folder/noise.glb" "${x[@]}"
-plain=tests/scenes/test_sphere_mesh.json # without an SDF, which takes two seconds to compile
+plain=$folder/plain.json # without an SDF, which takes two seconds to compile
+echo '{"models": [{"mesh": {"sphere": {"subdivisions": 0}}}]}' > "$plain"
 refuses 1 '/nowhere/x.masu: cannot write: No such file' $plain -o /nowhere/x.masu
 refuses 1 "$folder/out: cannot write: it is a directory" $plain -o "$folder/out"
 refuses 1 'cannot write /dev/full: No space' $plain -o /dev/full
