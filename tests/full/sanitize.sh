@@ -10,5 +10,5 @@ export ASAN_OPTIONS=${ASAN_OPTIONS:-handle_sigill=2} # undefined behaviour ends 
 export MASU_TEST_JOBS=$((($(nproc) + 1) / 2)) # of the others the tests beside it have use
 linker=
 ! command -v ld.gold > /dev/null || linker=-fuse-ld=gold # half of the time
-make --no-print-directory -j"$MASU_TEST_JOBS" CC=clang config=sanitize CFLAGS=-g0 CXXFLAGS=-g0 LDFLAGS="$linker" \
+make --no-print-directory -j"$MASU_TEST_JOBS" CC=clang config=sanitize CFLAGS=-g0 LDFLAGS="$linker" \
     BUILD=build/clang MADE="$made" WERROR=1 FULL= NESTED=1 unit
