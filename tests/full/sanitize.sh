@@ -8,7 +8,5 @@ made=$MADE
 unset BUILD MADE CC CXX
 export ASAN_OPTIONS=${ASAN_OPTIONS:-handle_sigill=2} # undefined behaviour ends in a trap: with its place
 export MASU_TEST_JOBS=$((($(nproc) + 1) / 2)) # of the others the tests beside it have use
-linker=
-! command -v ld.gold > /dev/null || linker=-fuse-ld=gold # half of the time
-make --no-print-directory -j"$MASU_TEST_JOBS" CC=clang config=sanitize CFLAGS=-g0 LDFLAGS="$linker" \
-    BUILD=build/clang MADE="$made" WERROR=1 FULL= NESTED=1 unit
+make --no-print-directory -j"$MASU_TEST_JOBS" CC=clang config=sanitize CFLAGS=-g0 BUILD=build/clang \
+    MADE="$made" WERROR=1 FULL= NESTED=1 unit
