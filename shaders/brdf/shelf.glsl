@@ -30,9 +30,9 @@ masu_shelved_bsdf masu_shelve(masu_bsdf b)
     p.f0 = masu_pack_halves(vec4(b.f0, b.f90));
     p.rest = masu_pack_halves(vec4(b.rest, b.seen.white));
     p.diffuse = masu_pack_halves(vec4(b.diffuse, b.seen.weight));
-    /* 1 - f90, mostly 0, instead of f90 - f0: for grazing light little more than its rounding
-     * remains below the specular reflection, an error of 3.6 % of diffuse light. */
-    p.matte = masu_pack_halves(vec4(b.matte_f0, 1.0 - b.matte_f0 - b.matte_slope, b.matte_rest, 0.0));
+    /* f90, mostly 1, instead of f90 - f0: for grazing light little more than its rounding remains
+     * below the specular reflection, an error of 3.6 % of diffuse light. */
+    p.matte = masu_pack_halves(vec4(b.matte_f0, b.matte_f0 + b.matte_slope, b.matte_rest, 0.0));
 #ifdef MASU_SURFACE
     p.matte.y = packHalf2x16(vec2(b.matte_rest, b.coat));
     p.coat_line = packHalf2x16(b.coat_line);
@@ -53,7 +53,7 @@ void masu_unshelve(masu_shelved_bsdf p, inout masu_bsdf b)
     b.seen.weight = v.w;
     v = masu_unpack_halves(p.matte);
     b.matte_f0 = v.x;
-    b.matte_slope = 1.0 - v.x - v.y;
+    b.matte_slope = v.y - v.x;
     b.matte_rest = v.z;
 #ifdef MASU_SURFACE
     b.coat = v.w;
