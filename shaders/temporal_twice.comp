@@ -42,14 +42,6 @@ struct cell {
     uint chance; /* of the first pixel */
 };
 
-vec3 add(vec3 sum, cell c, vec4 weights)
-{
-    sum += weights.x * c.light[0];
-    sum += weights.y * c.light[1];
-    sum += weights.z * c.light[2];
-    return sum + weights.w * c.light[3];
-}
-
 /* Resolves one of the four pixels. A function that is called four times, not a loop: the cost model
  * counts an unrolled loop as if each iteration ran the whole loop (docs/design/20-cost-model.md). */
 void resolve(cell c, ivec2 way)
@@ -63,22 +55,20 @@ void resolve(cell c, ivec2 way)
                                                                            * clamps */
     masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
     bool stays = masu_has_stayed(found);
-    float count = old.mean.a;
-    vec3 sum = count * old.mean.rgb;
-    if (stays) { /* by a box filter: only the closest texel has a weight */
-        float weight = column.y * row.y * c.inside_x[way.x] * c.inside_y[way.y];
-        sum += weight * c.light[way.x + 2 * way.y];
-        count += weight;
-    } else {
-        vec2 x = column.zw * c.inside_x, y = row.zw * c.inside_y;
-        sum = add(sum, c, x.xyxy * y.xxyy);
-        count += (x.x + x.y) * (y.x + y.y);
-    }
+    vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
+    vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * c.inside_y;
+    vec4 weights = x.xyxy * y.xxyy;
+    float count = old.mean.a + (x.x + x.y) * (y.x + y.y);
     if (count < 1.0) {
         float rest = 1.0 - count, below = f.y * rest, above = rest - below;
         vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
-        sum = add(sum, c, vec4(left.x, right.x, left.y, right.y));
+        weights += vec4(left.x, right.x, left.y, right.y);
     }
+    vec3 sum = old.mean.a * old.mean.rgb;
+    sum += weights.x * c.light[0];
+    sum += weights.y * c.light[1];
+    sum += weights.z * c.light[2];
+    sum += weights.w * c.light[3];
     if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* -1, before the
                                                                                * first pixel, is
                                                                                * outside as a

@@ -91,7 +91,7 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
      * stores, as NaN, or as more light than the cubic filter makes of 0..1 (the last two cannot
      * occur in unorm images): the pixel starts over. */
     bool stored = count <= masu_mean_most;
-    if (masu_half_means && !(stored && abs(old.mean.r) + abs(old.mean.g) + abs(old.mean.b) <= 6.0)) {
+    if (masu_half_means && !(stored && dot(abs(old.mean.rgb), vec3(1.0)) <= 6.0)) {
         stored = false;
         old.mean.rgb = old.curve = vec3(0.0);
     }
