@@ -57,10 +57,13 @@ void resolve(cell c, ivec2 way)
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
     vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * c.inside_y;
+    vec4 weights = x.xyxy * y.xxyy;
     float count = old.mean.a + (x.x + x.y) * (y.x + y.y);
-    float rest = max(1.0 - count, 0.0), below = f.y * rest, above = rest - below;
-    vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
-    vec4 weights = x.xyxy * y.xxyy + vec4(left.x, right.x, left.y, right.y);
+    if (count < 1.0) {
+        float rest = 1.0 - count, below = f.y * rest, above = rest - below;
+        vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
+        weights += vec4(left.x, right.x, left.y, right.y);
+    }
     vec3 sum = old.mean.a * old.mean.rgb;
     sum += weights.x * c.light[0];
     sum += weights.y * c.light[1];
