@@ -67,7 +67,8 @@ shared vec3 normals[EDGE * EDGE];
 void load_texels(ao_lens lens, uvec2 last)
 {
     ivec2 first = ivec2(gl_WorkGroupID.xy) * MASU_GROUP - 1;
-    for (int i = 0; i < (EDGE * EDGE + MASU_GROUP * MASU_GROUP - 1) / (MASU_GROUP * MASU_GROUP); i++) {
+    for (int i = 0; i < (EDGE * EDGE + MASU_GROUP * MASU_GROUP - 1) / (MASU_GROUP * MASU_GROUP);
+         i++) {
         int n = i * MASU_GROUP * MASU_GROUP + int(gl_LocalInvocationIndex);
         int row = n * (65536 / EDGE + 1) >> 16; /* n / EDGE */
         ivec2 from = first + ivec2(n - row * EDGE, row);

@@ -43,7 +43,8 @@ struct cell {
 };
 
 /* Resolves one of the four pixels. A function that is called four times, not a loop: the cost model
- * counts an unrolled loop as if each iteration ran the whole loop (docs/design/20-cost-model.md). */
+ * counts an unrolled loop as if each iteration ran the whole loop
+ * (docs/design/20-cost-model.md). */
 void resolve(cell c, ivec2 way)
 {
     ivec2 at = c.first + way;
@@ -93,7 +94,8 @@ void main()
     ivec2 after = c.before + 1;
     c.low = clamp(c.before, ivec2(0), last);
     c.high = clamp(after, ivec2(0), last);
-    c.light = vec3[4](light_at(c.low), light_at(ivec2(c.high.x, c.low.y)), light_at(ivec2(c.low.x, c.high.y)), light_at(c.high));
+    c.light = vec3[4](light_at(c.low), light_at(ivec2(c.high.x, c.low.y)),
+                      light_at(ivec2(c.low.x, c.high.y)), light_at(c.high));
     c.inside_x = vec2(equal(ivec2(c.low.x, c.high.x), ivec2(c.before.x, after.x)));
     c.inside_y = vec2(equal(ivec2(c.low.y, c.high.y), ivec2(c.before.y, after.y)));
     c.chance = masu_chance(uvec2(c.first));

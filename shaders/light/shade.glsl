@@ -27,7 +27,8 @@
 #endif
 
 /* On Mali and the Raspberry Pi lights are loaded again instead of kept: 64 registers for
- * each thread, and on Mali twice the threads at 32. Elsewhere that would only be more instructions. */
+ * each thread, and on Mali twice the threads at 32. Elsewhere that would only be more
+ * instructions. */
 layout(constant_id = 26) const bool masu_few_registers = false;
 
 /* Light that leaves a surface: diffuse and specular. */
@@ -223,9 +224,10 @@ masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
 }
 #endif
 
-/* Only the ambient light. b: of s; around: computed before b (masu_ambient_at needs many registers);
- * seen: visibility of the ambient light; sky: from masu_mirrored_sky. */
-masu_lit masu_shade_around(masu_surface s, masu_bsdf b, masu_around around, float seen, masu_mirrored sky)
+/* Only the ambient light. b: of s; around: computed before b (masu_ambient_at needs many
+ * registers); seen: visibility of the ambient light; sky: from masu_mirrored_sky. */
+masu_lit masu_shade_around(masu_surface s, masu_bsdf b, masu_around around, float seen,
+                           masu_mirrored sky)
 {
     vec3 ambient = around.mirrored * (seen * s.occlusion);
     masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen * s.occlusion),

@@ -18,8 +18,10 @@
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D found_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 3) uniform sampler2DArray history_image; /* linear */
-layout(set = MASU_SET_PASS, binding = 4, rg32ui) uniform writeonly uimage2DArray kept_image; /* history, other layer */
-layout(set = MASU_SET_PASS, binding = 5, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
+/* history, other layer */
+layout(set = MASU_SET_PASS, binding = 4, rg32ui) uniform writeonly uimage2DArray kept_image;
+layout(set = MASU_SET_PASS, binding = 5, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE target;
 
 const float masu_sharpen = 0.05; /* of moving pixels while the camera is stationary */
 
@@ -78,7 +80,8 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
          * sixth more of this pass by Intel's estimate. Texels outside of the image must not be
          * read, even with a weight of 0, since they may be NaN. */
         vec2 beside = min(vec2(texel + masu_found_beside(found)), vec2(push.last_x, push.last_y));
-        vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) * vec2(push.moved_x, push.moved_y);
+        vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) *
+                  vec2(push.moved_x, push.moved_y);
         vec2 moved = textureLod(velocity_image, uv, 0.0).xy + frame.shifts.zw;
         if (masu_is_missed(found)) {
             moved = masu_thin_motion(masu_thin_of(found));
@@ -117,7 +120,8 @@ void masu_show(ivec2 at, vec3 light, float count, masu_past old, bool stays, uin
 {
     light = clamp(light, 0.0, 1.0);
     float moving = (frame.temporal.z & MASU_TEMPORAL_MOVES) != 0u ? push.moving : masu_sharpen;
-    vec3 sharp = light + (stays ? push.calm : moving) * old.mean.a * (1.0 / max(count, 1.0)) * old.curve;
+    vec3 sharp = light +
+                 (stays ? push.calm : moving) * old.mean.a * (1.0 / max(count, 1.0)) * old.curve;
 #if defined(MASU_TEN) || defined(MASU_DEEP) /* the store does not clamp */
     sharp = clamp(sharp, 0.0, 1.0);
 #endif
