@@ -316,7 +316,7 @@ static double cpu_ms(void) { return 1e3 * (double)clock() / CLOCKS_PER_SEC; }
 
 static void slots_are_reused(void **state) {
     (void)state;
-    enum { KINDS = 2, SLOTS = 3, CHANGES = 1000 };
+    enum { KINDS = 2, SLOTS = 3, CHANGES = 600 };
     const given *of[KINDS] = {&ball, &block};
     masu_session s;
     masu_model mesh[KINDS][SLOTS] = {{{0}}}, gone = {0};
@@ -326,6 +326,7 @@ static void slots_are_reused(void **state) {
     for (uint32_t k = 0; k < KINDS; k++) reserve(&d, k, of[k], SLOTS);
     d.desc.picking = 1;
     d.desc.rungs[0].scale = 0.5f;
+    d.desc.rungs[0].shadow_resolution = 64;
     open_session(&s, &d);
     for (uint32_t i = 0; i < CHANGES; i++) {
         uint32_t k = random_word(&random) % KINDS, j = random_word(&random) % SLOTS,
