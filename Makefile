@@ -228,10 +228,13 @@ stiff: all $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the sphere trac
 	    for f in $(BUILD)/test-results/*/test_stiff.log; do \
 	        echo; echo "$$f"; grep '^|\|^  figures' "$$f"; done; exit $$code
 
+# Shaders and the scene among the seeds are those of the normal build.
+fuzzing = $(more) config=fuzz CC=clang BUILD='$(BUILD)/fuzz' MADE='$(MADE)'
+fuzz fuzz-all: $(GENERATED) $(filter %/blobs.masu,$(SCENES))
 fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
-	+$(V)$(more) config=fuzz CC=clang fuzz-$(FUZZ)
+	+$(V)$(fuzzing) fuzz-$(FUZZ)
 fuzz-all: ## fuzz every target of tests/fuzz: FUZZ_TIME=600 seconds each
-	+$(V)for f in $(FUZZ_ALL); do $(more) config=fuzz CC=clang fuzz-$$f FUZZ=$$f || exit 1; done
+	+$(V)for f in $(FUZZ_ALL); do $(fuzzing) fuzz-$$f FUZZ=$$f || exit 1; done
 
 # Two hours on a CPU driver. Pages stay in build/report. docs/report keeps ladders.txt, and of each scene the ladder and
 # the rows (tools/bench/keep.sh). The lab's build keeps nothing there.

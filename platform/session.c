@@ -138,7 +138,7 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
     masu_device_row_impose(row);
     if (row && !host.get_instance_proc_addr)
         host.get_instance_proc_addr = masu_device_row_proc_addr;
-    host.vulkan_1_0 = row && !row->minor;
+    host.vulkan_1_0 = host.vulkan_1_0 || (row && !row->minor);
     if (!open_scene(d, s, error, error_size) ||
         !masu_headless_open(&host, &s->host, error, error_size)) {
         masu_session_close(s);

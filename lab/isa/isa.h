@@ -14,7 +14,8 @@
 #include <stdio.h>
 
 /* FIELD(ID, name, unit and meaning, its names in RADV, Intel's drivers, Turnip, V3DV; NULL: not
- * reported; V3DV's spills and fills are its bytes again). PanVK's numbers are read from the lines that it prints. */
+ * reported; V3DV's spills and fills are its bytes again). PanVK's numbers are read from the lines
+ * that it prints. */
 #define MASU_ISA_FIELDS(FIELD)                                                                     \
     FIELD(REGISTERS, "registers", "vector registers of a lane (Turnip: of four numbers)", "VGPRs", \
           NULL, "Registers used", NULL)                                                            \

@@ -229,8 +229,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImag
                                                    VkImage *out) {
     (void)device, (void)allocator;
     uint64_t texels = (uint64_t)info->extent.width * info->extent.height * info->extent.depth;
-    *out = (VkImage)(uintptr_t)make_thing(texels * info->arrayLayers * (info->mipLevels > 1 ? 2 : 1) *
-                                          TEXEL_BYTES);
+    *out = (VkImage)(uintptr_t)make_thing(texels * info->arrayLayers *
+                                          (info->mipLevels > 1 ? 2 : 1) * TEXEL_BYTES);
     return *out ? VK_SUCCESS : VK_ERROR_OUT_OF_HOST_MEMORY;
 }
 

@@ -98,7 +98,8 @@ static VkShaderModule tally(const VkPipelineShaderStageCreateInfo *stage, uint32
         return VK_NULL_HANDLE;
     }
     masu_hook_shader *s = &hook.shaders[at];
-    *s = (masu_hook_shader){.pass = pass, .counts = (uint32_t *)hook.buffer.mapped + at * MASU_TALLY_WORDS};
+    *s = (masu_hook_shader){.pass = pass,
+                            .counts = (uint32_t *)hook.buffer.mapped + at * MASU_TALLY_WORDS};
     if (!masu_tally_make(m->words, m->count, hook.layouts[layout].set, at * MASU_TALLY_WORDS,
                          &s->tally)) {
         fail("counters cannot be put into a shader", pass);

@@ -15,8 +15,8 @@ bool masu_spirv_reach(const spirv_module *module, const VkSpecializationInfo *sp
                       bool *inside);
 
 /* Cost of all instructions that can run, ignoring branches: each once, those of a loop that
- * compilers unroll once per iteration, as in the compiled code. Without memory: of all instructions,
- * each once. */
+ * compilers unroll once per iteration, as in the compiled code. Without memory: of all
+ * instructions, each once. */
 masu_spirv_cost masu_spirv_cost_reached(const spirv_module *module,
                                         const VkSpecializationInfo *special);
 

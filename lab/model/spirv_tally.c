@@ -332,7 +332,8 @@ static void put_entry(maker *k, const spirv_instruction *one) {
     for (uint32_t n = 0; n < more; n++) put(&k->to, n ? k->variable[n - 1] : k->buffer);
 }
 
-/* A module of SPIR-V 1.0 without storage buffers gets the extension for the buffer of the counts. */
+/* A module of SPIR-V 1.0 without storage buffers gets the extension for the buffer of the
+ * counts. */
 static bool lacks_extension(const spirv_module *m) {
     bool lacks = m->words[1] < VERSION_1_3;
     for (size_t i = 0; i < m->count; i++) lacks &= m->list[i].op != SPIRV_EXTENSION;

@@ -237,6 +237,7 @@ static void a_vulkan_1_0_device_draws_the_same(void **state) {
             d.host.vulkan_1_0 = old;
             d.desc.rung_count = 1;
             open_session(&s, &d);
+            assert_int_equal(s.host.properties.apiVersion == VK_API_VERSION_1_0, old);
             images[old] = malloc((size_t)W * H * 4);
             assert_non_null(images[old]);
             draw_rung(&s, 0, images[old]);

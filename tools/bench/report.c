@@ -587,7 +587,8 @@ static char *make_page(report *r, size_t *bytes) {
     return NULL;
 }
 
-/* Three quarters of the page are for images at first. More text or larger plots halve the images. */
+/* Three quarters of the page are for images at first. More text or larger plots halve the
+ * images. */
 static bool write_page(report *r) {
     char path[4096];
     if (!masu_sweep_path(r->folder, "index.html", path)) return failed(r, "the path is too long");

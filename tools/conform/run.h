@@ -53,7 +53,8 @@ void masu_conform_close(masu_conform *c);
 
 /* Fills the result of a case that was not run, with the reason. */
 void masu_conform_not_run(const masu_case *of, const char *why, masu_conform_result *out);
-/* Compares the values of a case with its limits. `validated`: the validation layer ran, which hides allocations. */
+/* Compares the values of a case with its limits. `validated`: the validation layer ran, which hides
+ * allocations. */
 void masu_conform_judge(masu_conform_result *r, bool validated);
 /* Never fails: every error becomes the verdict. */
 void masu_conform_run(masu_conform *c, const masu_case *of, masu_conform_result *out);

@@ -156,7 +156,8 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
 
 /* Reports the reference's rays. In a scene without traced reflections the image itself is the
  * ground truth. */
-static void report_rays(const masu_session *s, const masu_render_options *o, const masu_stats_info *stats) {
+static void report_rays(const masu_session *s, const masu_render_options *o,
+                        const masu_stats_info *stats) {
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
     const masu_plan_rung *r = &plan.rungs[o->rung];
@@ -182,7 +183,8 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
     if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
     if (!file && !o->video) return MASU_CLI_OK;
-    if (!o->at_rest && !masu_render_animate(s, o, f.time, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!o->at_rest && !masu_render_animate(s, o, f.time, error, sizeof error))
+        return masu_cli_error("%s", error);
     if (!masu_picture_truth(s, &f, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS,
                             &(masu_picture_means){.linear = linear, .display = rgba},
                             masu_cli_progress_text, error, sizeof error) ||
@@ -657,8 +659,9 @@ static int run(masu_cli *cli) {
     free(o.lut);
     masu_video video = {0};
     code = set ? MASU_CLI_OK : masu_cli_error("%s", error);
-    if (!code && o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height,
-                                    o.time_step, error, sizeof error))
+    if (!code && o.video &&
+        !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height,
+                         o.time_step, error, sizeof error))
         code = masu_cli_error("%s", error);
     if (!code)
         code = o.positions ? render_truth(&s, &o, &video)

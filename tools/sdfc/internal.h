@@ -178,8 +178,8 @@ typedef struct sdfc_instr {
                                            before the fold; 21..23: 1 / period or 0; 24..26: cells
                                            around it */
     int16_t named, around; /* CALL_MIN: whether the function takes its own cell (1: of 18
-                                           to 23; 2: sector 18, of the odd points 19), and of how many
-                                           around it */
+                                           to 23; 2: sector 18, of the odd points 19), and of how
+                                           many around it */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 

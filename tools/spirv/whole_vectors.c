@@ -79,7 +79,8 @@ static bool start(const state *s, uint32_t base, chain *c) {
         if (!pointer || pointer->op != SPIRV_TYPE_POINTER) return false;
         if (storage != UNIFORM && storage != PUSH_CONSTANT && storage != STORAGE_BUFFER)
             return false;
-        *c = (chain){.known = true, .at = {.root = base}, .storage = storage, .type = pointer->word[3]};
+        *c = (chain){
+            .known = true, .at = {.root = base}, .storage = storage, .type = pointer->word[3]};
         return true;
     }
     if (b->op != SPIRV_ACCESS_CHAIN && b->op != SPIRV_IN_BOUNDS_ACCESS_CHAIN) return false;

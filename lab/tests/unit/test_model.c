@@ -176,7 +176,8 @@ static void a_loop_that_compilers_unroll_counts_per_iteration(void **state) {
     assert_int_equal(loop_cost("for (uint i = 0u; i < 33u; i++) c *= a;"), 6);
     assert_int_equal(loop_cost("for (uint i = 0u; i < 32u; i++) c = sqrt(c) * a;"), 32 * 10);
     assert_int_equal(loop_cost("for (uint i = 0u; i < 32u; i++) c = sqrt(sqrt(c)) * a;"), 14);
-    assert_int_equal(loop_cost("for (uint i = 0u; i < 4u; i++) { c *= a; if (c.x > 1.0) break; }"), 7);
+    assert_int_equal(loop_cost("for (uint i = 0u; i < 4u; i++) { c *= a; if (c.x > 1.0) break; }"),
+                     7);
 }
 
 /* By hand, EASU with debug.exact costs 794, without locating and bounding the pixel, plus 14 for

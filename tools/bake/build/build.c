@@ -86,8 +86,8 @@ static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds,
     masu_bake_vec3 at = masu_bake_v3f(camera->position);
     /* The distance must be resolvable in floats at large coordinates. */
     double ahead = fmax(1, masu_bake_length(at) * 1e-3);
-    *key = (masu_blob_camera_key){.fov_y = d->look.own_fov_y ? (float)(d->look.fov_y * (MASU_BAKE_PI / 180))
-                                                             : camera->fov_y};
+    *key = (masu_blob_camera_key){
+        .fov_y = d->look.own_fov_y ? (float)(d->look.fov_y * (MASU_BAKE_PI / 180)) : camera->fov_y};
     masu_bake_vec3 forward = masu_bake_v3f(camera->direction);
     if (camera->height > 0 && !(d->look.height > 0)) d->look.height = (double)camera->height;
     if (d->look.own_fov_y) d->look.height = 0;

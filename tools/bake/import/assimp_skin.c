@@ -199,9 +199,11 @@ static void delta_of(const origin *o, unsigned target, masu_bake_vec3 *position,
     *position = *normal = masu_bake_v3(0, 0, 0);
     if (!t || o->vertex >= t->mNumVertices || o->vertex >= o->mesh->mNumVertices) return;
     if (t->mVertices)
-        *position = masu_bake_sub(vector_of(&t->mVertices[o->vertex]), vector_of(&o->mesh->mVertices[o->vertex]));
+        *position = masu_bake_sub(vector_of(&t->mVertices[o->vertex]),
+                                  vector_of(&o->mesh->mVertices[o->vertex]));
     if (t->mNormals && o->mesh->mNormals)
-        *normal = masu_bake_sub(vector_of(&t->mNormals[o->vertex]), vector_of(&o->mesh->mNormals[o->vertex]));
+        *normal = masu_bake_sub(vector_of(&t->mNormals[o->vertex]),
+                                vector_of(&o->mesh->mNormals[o->vertex]));
     if (!masu_bake_sane(*position)) *position = masu_bake_v3(0, 0, 0);
     if (!masu_bake_sane(*normal)) *normal = masu_bake_v3(0, 0, 0);
 }

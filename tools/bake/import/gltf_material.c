@@ -721,9 +721,10 @@ bool masu_gltf_read_materials(masu_gltf *g) {
     g->materials = masu_gltf_take(g, g->material_count + 1, sizeof *g->materials);
     for (size_t i = 0; i <= g->material_count; i++) {
         masu_gltf_material *out = &g->materials[i];
-        *out = (masu_gltf_material){.given = {masu_bake_default_material(), masu_bake_no_maps(), ""},
-                                    .uv = {1, 0, 0, 0, 1, 0},
-                                    .alpha = 1};
+        *out =
+            (masu_gltf_material){.given = {masu_bake_default_material(), masu_bake_no_maps(), ""},
+                                 .uv = {1, 0, 0, 0, 1, 0},
+                                 .alpha = 1};
         if (i == g->material_count) { /* glTF's default if no material is named */
             masu_blob_material *to = &out->given.material;
             to->base_color[0] = to->base_color[1] = to->base_color[2] = 1;
