@@ -23,7 +23,6 @@
 #include <string.h>
 
 enum { W = 40, H = 24, BYTES = W * H * 4, WARM = 6, REST = 64 };
-enum { STILL_WARM = 2, STILL_REST = 2 }; /* without history */
 
 /* As fp32, as two fp16, and as bytes. */
 static const struct {
@@ -179,8 +178,8 @@ static uint32_t settle(bool gathers) {
         for (int i = 0; i < WARM; i++) take(kept, "static view", 0);
         return 255;
     }
-    uint32_t steps = 0, rest = gathers ? REST : STILL_REST;
-    for (int i = 0; i < (gathers ? WARM + 200 : STILL_WARM); i++) take(kept, "static view", 0);
+    uint32_t steps = 0, rest = gathers ? REST : REST / 8;
+    for (int i = 0; i < WARM + (gathers ? 200 : 0); i++) take(kept, "static view", 0);
     for (uint32_t i = 0; i < rest; i++) {
         take(now, "static view", 0);
         uint32_t d = max_difference(kept, now, BYTES);

@@ -2,9 +2,9 @@
  * at every resolution; depth of field is compared with the mean of many off-centre cameras on the lens; colour tables
  * and curves are compared with their formulas. */
 #include "reference/tone.h"
+#include "support/files.h"
 #include "support/floats.h"
 #include "support/random.h"
-#include "support/files.h"
 #include "support/support.h"
 
 #include <math.h>
