@@ -132,8 +132,7 @@ static void open_pictures(pictures *p, const char *scene, uint32_t width, uint32
     d.desc.rungs[ALL_LIGHTS].light_tiles = MASU_OFF;
     d.desc.rungs[UNCULLED].frustum = MASU_OFF;
     for (uint32_t way = 0; way < WAYS; way++)
-        d.desc.rungs[way].local_shadows = MASU_OFF, /* test_local_shadows.c */
-            d.desc.rungs[way].shadow_resolution = 16; /* of a dark sun */
+        d.desc.rungs[way].local_shadows = MASU_OFF; /* test_local_shadows.c */
     d.desc.debug.poison = 1;
     d.desc.reserve.particles = blends ? 8 : 0;
     open_session(&p->s, &d);

@@ -138,7 +138,6 @@ static void open_scene(masu_session *s, const char *name) {
     d.desc.frames_in_flight = 1;
     d.desc.rung_count = 2;
     d.desc.rungs[NONE].local_shadows = MASU_OFF;
-    for (uint32_t i = 0; i < 2; i++) d.desc.rungs[i].shadow_resolution = 16; /* of a dark sun */
     d.desc.reserve.particles = 1;
     d.desc.debug.poison = 1;
     open_session(s, &d);
