@@ -43,9 +43,6 @@ static const char *const text =
     "    octahedron(0.3))));\n"
     "part flat : grey = translate(o + (-0.6, 0.9, 1), scale((1, 0.5, 1.5), sphere(0.3)));\n";
 
-/* The march alone is compared: no rays for shadows, which take long to compile. */
-#define MARCH_ALONE ", \"shadows\": false, \"ambient_occlusion\": false"
-
 typedef struct picture {
     float depth[W * H]; /* view depth, 0: nothing */
     uint8_t albedo[W * H * 4];
@@ -62,7 +59,7 @@ static const char *baked(int offset, const char *member) {
     write_text("s.sdf", scene);
     snprintf(json, sizeof json,
              "{\"camera\": {\"near\": 0.1}, \"sdf\": {\"source\": \"s.sdf\", \"bounds\": "
-             "[[%d, -2, %d], [%d, 8, %d]], \"max_distance\": 100%s" MARCH_ALONE "}}",
+             "[[%d, -2, %d], [%d, 8, %d]], \"max_distance\": 100%s}}",
              offset + MIDDLE - 40, -offset - 40, offset + MIDDLE + 40, -offset + 40, member);
     bake_scene(name, json);
     return baked_scene(name);
@@ -223,15 +220,14 @@ static void a_large_ball_is_a_smooth_ground(void **state) {
     write_text("ball.sdf", "material m { albedo 0.5; roughness 1 } part ground : m = translate((0, "
                            "-3000, 0), sphere(3000));\n");
     for (int anchored = 0; anchored < 2; anchored++) {
-        char json[512];
+        char json[256];
         masu_session s;
         masu_commands commands;
         double worst = 0;
         uint32_t hits = 0;
         snprintf(json, sizeof json,
                  "{\"camera\": {\"near\": 0.1}, \"sdf\": {\"source\": \"ball.sdf\", \"bounds\": "
-                 "[[-200, -9, -200], [200, 9, 200]], \"max_distance\": 150, \"anchored\": %s"
-                 MARCH_ALONE "}}",
+                 "[[-200, -9, -200], [200, 9, 200]], \"max_distance\": 150, \"anchored\": %s}}",
                  anchored ? "true" : "false");
         bake_scene(anchored ? "ball1" : "ball0", json);
         masu_session_desc d = test_desc(NULL, W, H);

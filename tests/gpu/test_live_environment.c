@@ -88,7 +88,7 @@ static void open_scene(const char *name, int live) {
     masu_session_desc d = test_desc(NULL, W, H);
     d.scene_path = baked_scene(name);
     d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = 1.0f, .shadow_resolution = 16}; /* of a dark sun */
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f};
     d.desc.readback = MASU_READBACK_HDR;
     d.desc.live_environment = (uint32_t)live;
     open_session(&s, &d);

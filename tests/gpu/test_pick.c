@@ -235,8 +235,8 @@ static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, do
 static void set_rungs(masu_session_desc *d) {
     masu_switch specular = whole_run() ? MASU_AUTO : MASU_OFF;
     d->desc.rung_count = 2;
-    d->desc.rungs[0] = (masu_rung){.scale = 1, .specular = MASU_OFF, .shadow_resolution = 16};
-    d->desc.rungs[1] = (masu_rung){.scale = 0.5f, .specular = specular, .shadow_resolution = 16};
+    d->desc.rungs[0] = (masu_rung){.scale = 1, .specular = MASU_OFF};
+    d->desc.rungs[1] = (masu_rung){.scale = 0.5f, .specular = specular};
 }
 
 static void open_reserve(masu_session *s, const char *name, uint32_t models) {
