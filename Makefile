@@ -78,9 +78,10 @@ endif
 # So does, with the sanitizers, everything that no test spends its time in: a quarter of the time to compile.
 ifeq ($(config),sanitize)
 $(foreach f,examples src platform tests/fuzz tests/unit $(addprefix tools/,bench cli command conform masu measure meso \
-    metric settings spirv view) $(addprefix tools/bake/,base build description import write), \
+    metric settings spirv view) $(addprefix tools/bake/,base build description import scene shader write), \
     $(BUILD)/obj/$(f)/%.o): FOLDER_FLAGS += -O0
-$(BUILD)/obj/tests/unit/test_bake_%.o: FOLDER_FLAGS += -O1
+$(BUILD)/obj/tests/unit/test_bake_%.o $(addprefix $(BUILD)/obj/,src/scene/reader.o src/scene/check_code.o \
+    src/scene/blob_section.o tools/bake/shader/spirv.o): FOLDER_FLAGS += -O1
 endif
 
 # ---- Rules ---------------------------------------------------------------------------------------

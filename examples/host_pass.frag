@@ -1,5 +1,6 @@
 /*
- * host_pass.frag: one colour: before the tone curve linear radiance, afterwards what is shown; multiplied by its alpha.
+ * host_pass.frag: one colour: before the tone curve linear radiance, afterwards what is shown;
+ * multiplied by its alpha.
  */
 #version 450
 

@@ -49,8 +49,8 @@
  * VULKAN CONTRACT
  *  - Device: Vulkan 1.1, or 1.0 with VK_KHR_storage_buffer_storage_class, VK_KHR_maintenance1 and
  *    VK_KHR_maintenance2 enabled; one queue family with graphics and compute, D32_SFLOAT as depth
- *    attachment and sampled image. No optional feature is required; masu_detail names a missing required one.
- *    These optional features are used if the host has enabled them (masu_vulkan):
+ *    attachment and sampled image. No optional feature is required; masu_detail names a missing
+ *    required one. These optional features are used if the host has enabled them (masu_vulkan):
  *    textureCompressionBC and samplerAnisotropy for textures, VK_KHR_ray_query for reflections,
  *    shaderFloat16 for upscaling. masu_device_query reports which ones a scene would use, before
  *    the device exists. masu_init logs each of those that the host has not enabled.
@@ -1155,7 +1155,8 @@ typedef struct masu_frame_desc {
     const masu_trail *trails; /* with at most desc.reserve.trail_points points together */
     uint32_t trail_count;
     /* Flag: commands of the host have changed textures (masu_texture_image_of) since the previous
-     * frame. Rungs with temporal then shorten their history, as they do after masu_texture_write. */
+     * frame. Rungs with temporal then shorten their history, as they do after
+     * masu_texture_write. */
     uint32_t textures_changed;
     masu_post post; /* effects on the image, of desc.post */
     /* pick: flag. masu_pick reports the object at this pixel of the output (or viewport), counted
@@ -1853,7 +1854,8 @@ typedef struct masu_material_state {
     float emissive[3];   /* linear radiance, 0..1e9 */
     float roughness;     /* perceptual, 0..1 */
     float metallic;      /* 0..1 */
-    /* 0..1: dielectric reflectance at normal incidence / 0.08; default 0.5. Lobes: read only, to 12.5. */
+    /* 0..1: dielectric reflectance at normal incidence / 0.08; default 0.5. Lobes: read only, to
+     * 12.5. */
     float specular;
     float coat;              /* weight of the clear coat, 0..1 */
     float coat_roughness;    /* perceptual, 0..1; unused while `coat` is 0 */

@@ -31,7 +31,7 @@ typedef struct masu_headless_desc {
     bool ray_query;     /* ray queries, if supported */
     bool stores;        /* stores and atomics of vertex and fragment shaders, if supported */
     bool deny;          /* no optional features, even if supported and requested */
-    bool vulkan_1_0;    /* use the device as one of Vulkan 1.0: an instance of 1.0, no later calls */
+    bool vulkan_1_0; /* use the device as one of Vulkan 1.0: an instance of 1.0, no later calls */
     void (*message)(void *user,
                     const char *text); /* each validation warning or error; NULL: only counted */
     void *message_user;

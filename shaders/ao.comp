@@ -139,7 +139,8 @@ float seen_from(surface_point p, ao_lens lens, uvec2 texel)
         screen *= masu_rsqrt(dot(screen, screen));
         vec2 in_slice = vec2(dot(p.normal, e), dot(p.normal, way));
         float length_n = length(in_slice);
-        if (length_n > 1e-4) { /* else the slice is parallel to the surface: its cosine weight is 0 */
+        /* else the slice is parallel to the surface: its cosine weight is 0 */
+        if (length_n > 1e-4) {
             in_slice /= length_n;
             [[dont_unroll]] for (int side = 0; side < 2; side++) {
                 hidden += hidden_by(p, lens, way, screen, in_slice, length_n, reach, phase);
@@ -171,7 +172,8 @@ void main()
         p.eye = -p.place * masu_rsqrt(dot(p.place, p.place));
         p.normal = ao_view_normal(packed);
         float seen = there ? seen_from(p, lens, texel) : 1.0;
-        MASU_STORE_UINT(ao_image, texel, uvec4(ao_pack(masu_sane(seen, 0.0, 1.0), there ? depth : 0.0)));
+        MASU_STORE_UINT(ao_image, texel,
+                        uvec4(ao_pack(masu_sane(seen, 0.0, 1.0), there ? depth : 0.0)));
     }
     masu_count_end();
 }

@@ -67,9 +67,11 @@ shared vec3 normals[EDGE * EDGE];
 void load_texels(ao_lens lens, uvec2 last)
 {
     ivec2 first = ivec2(gl_WorkGroupID.xy) * MASU_GROUP - 1;
-    for (int i = 0; i < (EDGE * EDGE + MASU_GROUP * MASU_GROUP - 1) / (MASU_GROUP * MASU_GROUP); i++) {
+    for (int i = 0; i < (EDGE * EDGE + MASU_GROUP * MASU_GROUP - 1) / (MASU_GROUP * MASU_GROUP);
+         i++) {
         int n = i * MASU_GROUP * MASU_GROUP + int(gl_LocalInvocationIndex);
-        ivec2 from = first + ivec2(n % EDGE, n / EDGE);
+        int row = n * (65536 / EDGE + 1) >> 16; /* n / EDGE */
+        ivec2 from = first + ivec2(n - row * EDGE, row);
         if (n < EDGE * EDGE) {
             bool inside = all(greaterThanEqual(from, ivec2(0))) &&
                           all(lessThan(from, ivec2(pc.output_width, pc.output_height)));
@@ -155,17 +157,17 @@ void main()
         uint corner = gl_LocalInvocationID.y * EDGE + gl_LocalInvocationID.x;
         float least = 1.0;
         float most = 0.0;
+        float lowest = 1.0; /* -1 if one is missing, which `least` takes as unoccluded */
         float sum = 0.0;
-        bool all_there = true;
         for (int i = 0; i < 16; i++) {
             float seen = texels[corner + uint((i >> 2) * EDGE + (i & 3))].w;
-            all_there = all_there && seen >= 0.0;
-            least = min(least, seen < 0.0 ? 1.0 : seen);
+            lowest = min(lowest, seen);
+            least = min(least, abs(seen));
             most = max(most, seen);
             sum += seen;
         }
         vec4 ambient = vec4(1.0);
-        if (all_there && most - least <= even) {
+        if (lowest >= 0.0 && most - least <= even) {
             ambient = vec4(sum * (1.0 / 16.0));
         } else if (!(least > open)) {
             ambient = filtered(texel, last, corner);

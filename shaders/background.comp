@@ -40,8 +40,9 @@ vec4 mean_of_pixels(uvec2 at)
     for (uint k = 0u; k < 4u; k++) {
         uvec2 own = at * 2u + uvec2(k & 1u, k >> 1);
         ivec2 pixel = min(ivec2(own), last);
-        vec4 seen = vec4(masu_sane(texelFetch(hdr_image, pixel, 0).rgb, 0.0, brightest),
-                         masu_background_depth(masu_sane(texelFetch(depth_image, pixel, 0).r, 0.0, 1.0)));
+        vec4 seen =
+            vec4(masu_sane(texelFetch(hdr_image, pixel, 0).rgb, 0.0, brightest),
+                 masu_background_depth(masu_sane(texelFetch(depth_image, pixel, 0).r, 0.0, 1.0)));
 #ifdef MASU_REFRACTED
         keep(0u, gl_NumWorkGroups.xy, own, seen);
 #endif

@@ -15,7 +15,8 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE target;
 
 vec3 fetch(ivec2 at)
 {

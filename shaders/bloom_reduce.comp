@@ -60,7 +60,9 @@ void main()
     for (uint level = 0u; level < 3u && level < push.levels; level++) {
         uvec2 size = masu_bloom_size(divisor);
         if (at.x < size.x && at.y >= row && at.y < row + size.y) {
-            MASU_STORE_HALF(bloom_image, at, vec4(reduced(uvec2(at.x, at.y - row), divisor / max(push.divisor, 1u)), 0.0));
+            MASU_STORE_HALF(
+                bloom_image, at,
+                vec4(reduced(uvec2(at.x, at.y - row), divisor / max(push.divisor, 1u)), 0.0));
         }
         row += size.y;
         divisor *= 2u;

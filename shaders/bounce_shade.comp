@@ -109,9 +109,11 @@ void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n,
         float cosine;
         vec3 form = masu_form_factor(to, u, v);
         color *= masu_above(form, dot(form, n), cosine);
-        to += (2.0 * masu_bounce_unit(hash.y) - 1.0) * u + (2.0 * masu_bounce_unit(hash.z) - 1.0) * v;
+        to += (2.0 * masu_bounce_unit(hash.y) - 1.0) * u +
+              (2.0 * masu_bounce_unit(hash.z) - 1.0) * v;
         l = masu_normalize(to, n);
-        float thick = masu_light_kind(light) == MASU_KIND_CAPSULE ? masu_sqrt(light.color.w) : light.axis.w;
+        float thick = masu_light_kind(light) == MASU_KIND_CAPSULE ? masu_sqrt(light.color.w)
+                                                                  : light.axis.w;
         float facing = abs(dot(masu_normalize(cross(u, v), l), l));
         margin = 1.1 * thick / max(facing, 0.1) + 0.02;
     } else {
@@ -173,10 +175,13 @@ void main()
                 vec3 n = m.normal;
                 /* Before the lights: it needs the most registers. */
                 vec4 live = masu_probe_light(from, n);
-                sum += reflectance(m.surface, -dot(n, direction)) * (live.rgb * live.w + (unlit ? masu_ambient(n) * (1.0 - live.w) : vec3(0.0)));
+                sum += reflectance(m.surface, -dot(n, direction)) *
+                       (live.rgb * live.w + (unlit ? masu_ambient(n) * (1.0 - live.w) : vec3(0.0)));
                 vec3 far = abs(from + probe_grid.origin.xyz);
-                lifted += n * (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
-                uint seed = (ray.probe * MASU_BOUNCE_SETS + ray.set) * MASU_BOUNCE_RAYS_MAX + ray.number;
+                lifted += n *
+                          (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
+                uint seed = (ray.probe * MASU_BOUNCE_SETS + ray.set) * MASU_BOUNCE_RAYS_MAX +
+                            ray.number;
                 if (unlit) {
                     vec3 l = frame.sun_direction.xyz;
                     ask(c, l, frame.trace_anchor.w, frame.sun_color.rgb * max(dot(n, l), 0.0), 0.0);
@@ -187,7 +192,8 @@ void main()
                     if (k >= lights) {
                         break;
                     }
-                    ask_light(c, masu_lights[k], lifted - eye, n, masu_bounce_hash(uvec3(seed, k, 0x626F756Eu)));
+                    ask_light(c, masu_lights[k], lifted - eye, n,
+                              masu_bounce_hash(uvec3(seed, k, 0x626F756Eu)));
                 }
 #endif
                 added = reflectance(m.surface, dot(n, c.l)) * c.color * (c.total / c.weight);
@@ -198,8 +204,10 @@ void main()
         sum = masu_sane(sum, 0.0, 65504.0);
         added = masu_sane(added, 0.0, 65504.0);
         vec3 at = lifted + (probe_grid.origin.xyz - frame.trace_anchor.xyz);
-        masu_bounce_rays[2u * i] = uvec4(floatBitsToUint(at), floatBitsToUint(c.total > 0.0 ? c.far : -1.0));
-        masu_bounce_rays[2u * i + 1u] = uvec4(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, added.r)),
+        masu_bounce_rays[2u * i] = uvec4(floatBitsToUint(at),
+                                         floatBitsToUint(c.total > 0.0 ? c.far : -1.0));
+        masu_bounce_rays[2u * i + 1u] = uvec4(packHalf2x16(sum.rg),
+                                              packHalf2x16(vec2(sum.b, added.r)),
                                               packHalf2x16(added.gb), masu_pack_direction(c.l));
     }
 }

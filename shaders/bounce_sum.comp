@@ -75,7 +75,8 @@ void main()
             sum += vec3(ba.y, unpackHalf2x16(seen.z));
         }
         light[lane] = masu_sane(sum, 0.0, 65504.0);
-        directions[lane] = masu_bounce_direction(masu_bounce_ray(word & MASU_BOUNCE_PROBE, set, lane));
+        directions[lane] =
+            masu_bounce_direction(masu_bounce_ray(word & MASU_BOUNCE_PROBE, set, lane));
     }
     barrier();
     if (lane < 28u) {
@@ -94,8 +95,11 @@ void main()
         vec2 mean = now;
         for (uint s = 0u; s < MASU_BOUNCE_SETS; s++) {
             if (s < count && s != set) {
-                uint other = masu_probe_live_sets() + (probe * MASU_BOUNCE_SETS + s) * MASU_PROBE_SET_WORDS;
-                mean += masu_sane(vec4(unpackHalf2x16(probe_words[other + lane]), 0.0, 0.0), -65504.0, 65504.0).xy;
+                uint other = masu_probe_live_sets() +
+                             (probe * MASU_BOUNCE_SETS + s) * MASU_PROBE_SET_WORDS;
+                mean += masu_sane(vec4(unpackHalf2x16(probe_words[other + lane]), 0.0, 0.0),
+                                  -65504.0, 65504.0)
+                            .xy;
             }
         }
         found = mean / float(count);

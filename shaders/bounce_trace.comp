@@ -26,7 +26,8 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i < masu_bounce.rays.x * 64u && i < masu_bounce.rays.w) {
         masu_bounce_ray ray = masu_bounce_ray_at(i);
-        vec3 origin = masu_probe_place(ray.probe) + (probe_grid.origin.xyz - frame.trace_anchor.xyz);
+        vec3 origin = masu_probe_place(ray.probe) +
+                      (probe_grid.origin.xyz - frame.trace_anchor.xyz);
         vec3 direction = vec3(0.0);
         float far = frame.trace_anchor.w;
         bool shadow = push.shadow != 0u;

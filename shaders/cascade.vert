@@ -39,7 +39,8 @@ float slope_of(vec3 n, uint k)
     float texel = shadow.origin_hi[k].w;
     float metre = shadow.origin_lo[k].w;
     float half_width = 0.5 * texel * shadow.rect[k].z;
-    float across = max(abs(dot(n, shadow.row0[k].xyz)), abs(dot(n, shadow.row1[k].xyz))) * half_width;
+    float across = max(abs(dot(n, shadow.row0[k].xyz)), abs(dot(n, shadow.row1[k].xyz))) *
+                   half_width;
     float towards = abs(dot(n, shadow.row2[k].xyz)) / metre;
     bool flat_enough = across < MASU_SHADOW_STEEPEST * towards;
     return (flat_enough ? across / towards : MASU_SHADOW_STEEPEST) * texel * metre;

@@ -83,7 +83,10 @@ vec3 tile_plane(uint i, uvec2 corner, uvec2 size)
     vec3 f = frame.forward.xyz;
     vec3 right = frame.right.xyz;
     vec3 down = -frame.up.xyz;
-    vec3 side = i == 0u ? right * low.x : i == 1u ? right * high.x : i == 2u ? down * low.y : down * high.y;
+    vec3 side = i == 0u   ? right * low.x
+                : i == 1u ? right * high.x
+                : i == 2u ? down * low.y
+                          : down * high.y;
     vec3 plane = masu_normalize(cross(f + side, i < 2u ? down : right), vec3(0.0));
     vec3 middle = f + right * (low.x + high.x) * 0.5 + down * (low.y + high.y) * 0.5;
     return dot(plane, middle) < 0.0 ? -plane : plane;
@@ -111,7 +114,8 @@ bool box_seen(vec3 low, vec3 high, float z_far)
     low = low - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
     high = high - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
     vec3 forward = frame.forward.xyz;
-    float slack = 16.0 * ulp * (length(frame.sdf_min.xyz) + length(frame.sdf_max.xyz) + length(low));
+    float slack = 16.0 * ulp *
+                  (length(frame.sdf_min.xyz) + length(frame.sdf_max.xyz) + length(low));
     vec3 near_corner = mix(low, high, lessThan(forward, vec3(0.0)));
     bool outside = dot(near_corner, forward) > z_far + slack;
     for (int i = 0; i < 4; i++) {

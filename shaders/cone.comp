@@ -70,7 +70,8 @@ void main()
 #endif
         /* Most cones end at a half-space; marching beyond the centre ray's hit on it is useless. */
         uint part;
-        float limit = min(frame.sdf_max.w, masu_sdf_flat(world_at(r.direction, 0.0), r.direction, t, part));
+        float limit = min(frame.sdf_max.w,
+                          masu_sdf_flat(world_at(r.direction, 0.0), r.direction, t, part));
         uint evals = 0u;
         uvec2 pixels = uvec2(pc.render_width, pc.render_height);
         masu_listed_box(box_low, box_high);
@@ -86,7 +87,8 @@ void main()
                 vec4 ends = span_ends(t, r.pixel);
                 float begin = span == 0 ? t : span == 1 ? ends.x : span == 2 ? ends.y : ends.z;
                 float end = span == 0 ? ends.x : span == 1 ? ends.y : span == 2 ? ends.z : ends.w;
-                if (empty || push.all_terms != 0u || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
+                if (empty || push.all_terms != 0u || span == MASU_BLOCK_SPANS ||
+                    (span > 0 && !(begin < limit))) {
                     break;
                 }
                 at_t = 0.5 * (begin + end);
@@ -126,7 +128,8 @@ void main()
         for (int i = 0; i < MASU_BLOCK_SPANS; i++) {
             for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
                 if (i >= span) {
-                    masu_tiles_out[place + uint(1 + i * MASU_SDF_BLOCK_WORDS + w)] = masu_list_bits[w];
+                    masu_tiles_out[place + uint(1 + i * MASU_SDF_BLOCK_WORDS + w)] =
+                        masu_list_bits[w];
                 }
             }
         }

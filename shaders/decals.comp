@@ -48,9 +48,11 @@ const float dielectric = 0.04; /* reflectance at normal incidence */
 /* Weight of a decal at a point relative to the camera, for a surface with the normal n. */
 float painted(uint at, vec3 rel, vec3 n, vec4 look)
 {
-    vec4 row0 = sprites[at], row1 = sprites[at + 1u], row2 = sprites[at + 2u], axis = sprites[at + 5u];
+    vec4 row0 = sprites[at], row1 = sprites[at + 1u], row2 = sprites[at + 2u],
+         axis = sprites[at + 5u];
     vec4 place = sprites[at + 6u];
-    vec3 p = vec3(dot(row0.xyz, rel) + row0.w, dot(row1.xyz, rel) + row1.w, dot(row2.xyz, rel) + row2.w);
+    vec3 p = vec3(dot(row0.xyz, rel) + row0.w, dot(row1.xyz, rel) + row1.w,
+                  dot(row2.xyz, rel) + row2.w);
     bool round_one = (floatBitsToUint(look.w) & MASU_SPRITE_ROUND) != 0u;
     float far = round_one ? masu_sqrt(dot(p.xy, p.xy)) : max(abs(p.x), abs(p.y));
     float rest = 1.0 - far;
@@ -81,7 +83,9 @@ void cover(inout masu_surface s, vec3 paint, float metallic, float share)
 vec3 to_neighbour(vec3 ray, vec3 rel, vec3 n)
 {
     float away = dot(n, rel), towards = dot(n, ray);
-    float far = abs(towards) > 0.02 * masu_sqrt(dot(ray, ray)) ? clamp(away / towards, 0.0, masu_huge) : 0.0;
+    float far = abs(towards) > 0.02 * masu_sqrt(dot(ray, ray))
+                    ? clamp(away / towards, 0.0, masu_huge)
+                    : 0.0;
     return far > 0.0 ? ray * far - rel : vec3(0.0);
 }
 
@@ -95,10 +99,12 @@ vec4 textured(uint at, vec4 color, vec3 rel, vec3 dx, vec3 dy)
     }
     vec4 row0 = sprites[at], row1 = sprites[at + 1u];
     vec2 p = vec2(dot(row0.xyz, rel) + row0.w, dot(row1.xyz, rel) + row1.w);
-    vec2 px = vec2(dot(row0.xyz, dx), dot(row1.xyz, dx)), py = vec2(dot(row0.xyz, dy), dot(row1.xyz, dy));
+    vec2 px = vec2(dot(row0.xyz, dx), dot(row1.xyz, dx)),
+         py = vec2(dot(row0.xyz, dy), dot(row1.xyz, dy));
     const vec2 half_box = vec2(0.5, -0.5);
-    return color * masu_live_mean(textures_image, float(number) - 1.0, sprites[at + 7u], p * half_box + 0.5,
-                                  px * half_box, py * half_box, MASU_LIVE_CLAMP);
+    return color * masu_live_mean(textures_image, float(number) - 1.0, sprites[at + 7u],
+                                  p * half_box + 0.5, px * half_box, py * half_box,
+                                  MASU_LIVE_CLAMP);
 }
 #endif
 
@@ -177,7 +183,8 @@ void main()
     uint count = min(floatBitsToUint(sprites[MASU_SPRITE_DISPATCH].w), uint(MASU_DECALS_MAX));
     uint words = (count + 31u) / 32u;
     uvec2 size = uvec2(pc.output_width, pc.output_height);
-    uvec2 first = floatBitsToUint(sprites[MASU_SPRITE_PLACE].xy) + uint(MASU_GROUP) * gl_WorkGroupID.xy;
+    uvec2 first = floatBitsToUint(sprites[MASU_SPRITE_PLACE].xy) +
+                  uint(MASU_GROUP) * gl_WorkGroupID.xy;
     uvec2 last = first + uint(MASU_GROUP - 1);
     uint lane = gl_LocalInvocationIndex;
     if (lane < words) {
@@ -190,7 +197,8 @@ void main()
             break;
         }
         uvec2 ends = floatBitsToUint(sprites[push.first + uint(DECAL_VEC4S) * i + 6u].xy);
-        uvec2 low = uvec2(ends.x & 0xFFFFu, ends.x >> 16), high = uvec2(ends.y & 0xFFFFu, ends.y >> 16);
+        uvec2 low = uvec2(ends.x & 0xFFFFu, ends.x >> 16),
+              high = uvec2(ends.y & 0xFFFFu, ends.y >> 16);
         if (all(lessThanEqual(low, last)) && all(greaterThanEqual(high, first))) {
             atomicOr(touched[i >> 5], 1u << (i & 31u));
         }

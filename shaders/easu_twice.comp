@@ -29,7 +29,8 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE target;
 
 void main()
 {
@@ -59,7 +60,8 @@ void main()
             result = above + p.y * (below - above);
         } else {
             vec4 w = masu_bilinear_weights(p);
-            vec3 mean = masu_weighted_mean(t, masu_kernel_of(vec3(dot(w, e.x), dot(w, e.y), dot(w, e.z))), p);
+            vec3 mean = masu_weighted_mean(
+                t, masu_kernel_of(vec3(dot(w, e.x), dot(w, e.y), dot(w, e.z))), p);
             result = min(most, max(least, mean));
         }
         if (all(lessThan(at, size))) { /* false for -1, which wraps around */

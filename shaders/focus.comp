@@ -20,13 +20,15 @@ layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform image2D hdr_image;
 void main()
 {
     uvec2 at = gl_GlobalInvocationID.xy;
-    if (!(post.lens.y > 0.0) || any(greaterThanEqual(at, uvec2(pc.render_width, pc.render_height)))) {
+    if (!(post.lens.y > 0.0) ||
+        any(greaterThanEqual(at, uvec2(pc.render_width, pc.render_height)))) {
         return;
     }
     float radius = masu_focus_radius(texelFetch(depth_image, ivec2(at), 0).r);
     /* Bilinear, of four texels: texels without a layer have weight 0. */
     vec2 place = 0.5 * (vec2(at) + 0.5) - 0.5, part = fract(place);
-    ivec2 first = ivec2(floor(place)), last = (ivec2(pc.render_width, pc.render_height) + 1) / 2 - 1;
+    ivec2 first = ivec2(floor(place)),
+          last = (ivec2(pc.render_width, pc.render_height) + 1) / 2 - 1;
     vec4 behind = vec4(0.0), front = vec4(0.0);
     for (int k = 0; k < 4; k++) {
         ivec2 side = ivec2(k & 1, k >> 1), texel = clamp(first + side, ivec2(0), last);
@@ -39,7 +41,8 @@ void main()
         return;
     }
     vec4 lit = imageLoad(hdr_image, ivec2(at));
-    vec3 color = masu_sane(lit.rgb, 0.0, 65504.0), distant = behind.a > 1e-3 ? behind.rgb / behind.a : color;
+    vec3 color = masu_sane(lit.rgb, 0.0, 65504.0),
+         distant = behind.a > 1e-3 ? behind.rgb / behind.a : color;
     if (radius < 0.0 && blurred > 0.0) {
         /* The surrounding discs have this pixel's share. Dividing by it leaves the coverage of the
          * surface. */

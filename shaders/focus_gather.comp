@@ -44,7 +44,9 @@ void main()
         nearest = 0u;
     }
     barrier();
-    ivec2 tiles = ivec2(pc.render_width + uint(MASU_TILE) - 1u, pc.render_height + uint(MASU_TILE) - 1u) / MASU_TILE;
+    ivec2 tiles = ivec2(pc.render_width + uint(MASU_TILE) - 1u,
+                        pc.render_height + uint(MASU_TILE) - 1u) /
+                  MASU_TILE;
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float most = min(float(MASU_FOCUS_MOST) * float(pc.render_height), masu_focus_reach);
     int around = int(most / float(MASU_TILE)) + 1; /* 9 at most */
@@ -53,7 +55,8 @@ void main()
         int k = n * MASU_GROUP * MASU_GROUP + int(gl_LocalInvocationIndex);
         ivec2 offset = ivec2(k % side, min(k / side, side)) - around;
         ivec2 tile = ivec2(gl_WorkGroupID.xy) + offset;
-        if (k < side * side && all(greaterThanEqual(tile, ivec2(0))) && all(lessThan(tile, tiles))) {
+        if (k < side * side && all(greaterThanEqual(tile, ivec2(0))) &&
+            all(lessThan(tile, tiles))) {
             float radius = masu_sane(texelFetch(tiles_image, tile, 0).r, 0.0, most);
             int between = max(max(abs(offset.x), abs(offset.y)) - 1, 0) * MASU_TILE;
             if (radius > float(between)) {
@@ -69,22 +72,28 @@ void main()
     float own_disc = max(0.5 * masu_focus_disc(max(own.a, 0.0)), 0.5);
     vec4 behind = vec4(0.0), front = vec4(0.0);
     if (widest > 0.5) {
-        uint noise = uint(at.x) * 0xC13FA9A9u + uint(at.y) * 0x91E10DA5u + (push.vary != 0u ? frame.history.x * 0x9E3779B9u : 0u);
+        uint noise = uint(at.x) * 0xC13FA9A9u + uint(at.y) * 0x91E10DA5u +
+                     (push.vary != 0u ? frame.history.x * 0x9E3779B9u : 0u);
         float turn = float(noise >> 8) * (6.2831853 / 16777216.0);
         float area = radius * radius / float(SAMPLES);
         for (int k = 0; k < SAMPLES; k++) {
             /* Evenly distributed from the disc's centre, by the golden angle; H. Vogel, 1979. */
-            float away = radius * masu_sqrt(float(k) / float(SAMPLES)), angle = turn + 2.3999632 * float(k);
+            float away = radius * masu_sqrt(float(k) / float(SAMPLES)),
+                  angle = turn + 2.3999632 * float(k);
             ivec2 from = ivec2(floor(vec2(at) + 0.5 + away * vec2(cos(angle), sin(angle))));
-            vec4 there = masu_sane(texelFetch(source_image, clamp(from, ivec2(0), last), 0), -65504.0, 65504.0);
+            vec4 there = masu_sane(texelFetch(source_image, clamp(from, ivec2(0), last), 0),
+                                   -65504.0, 65504.0);
             float disc = max(0.5 * masu_focus_disc(there.a), 0.5);
             /* Far layer. */
             float least = min(disc, own_disc);
-            float weight = own.a > 0.0 ? clamp(least - away + 0.5, 0.0, 1.0) * clamp(there.a, 0.0, 1.0) / (least * least)
+            float weight = own.a > 0.0 ? clamp(least - away + 0.5, 0.0, 1.0) *
+                                             clamp(there.a, 0.0, 1.0) / (least * least)
                                        : clamp(there.a - own.a - 1.0, 0.0, 1.0);
             behind += weight * vec4(there.rgb, 1.0);
             /* Near layer. */
-            float covers = there.a < 0.0 ? clamp(disc - away + 0.5, 0.0, 1.0) * masu_focus_share(there.a) : 0.0;
+            float covers = there.a < 0.0
+                               ? clamp(disc - away + 0.5, 0.0, 1.0) * masu_focus_share(there.a)
+                               : 0.0;
             front += covers * area / (disc * disc) * vec4(there.rgb, 1.0);
         }
         behind = behind.a > 1e-4 ? vec4(behind.rgb / behind.a, 1.0) : vec4(0.0);

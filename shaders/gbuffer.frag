@@ -118,7 +118,8 @@ void main()
 #ifdef MASU_TEXTURES
 #ifdef MASU_MOTION
     float speed = length(out_velocity.xy + frame.shifts.zw);
-    mip_bias = min(push.mip_bias + push.mip_moving * min(share_per_pixel * speed, most_shares), max(push.mip_bias, 0.0));
+    mip_bias = min(push.mip_bias + push.mip_moving * min(share_per_pixel * speed, most_shares),
+                   max(push.mip_bias, 0.0));
 #endif
     /* Derivatives must precede the discard. */
     float alpha = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);

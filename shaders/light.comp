@@ -68,14 +68,16 @@ vec2 arriving(uvec2 at)
 }
 
 #ifdef MASU_LOCAL_SHADOWS
-const bool emission_late = true; /* loaded after the ambient light, which leaves no registers for it */
+/* loaded after the ambient light, which leaves no registers for it */
+const bool emission_late = true;
 #else
 const bool emission_late = false;
 #endif
 
 vec3 load_emission(ivec2 at, uint normal)
 {
-    return masu_has_emission(normal) ? imageLoad(hdr_image, at).rgb : vec3(0.0); /* elsewhere hdr is undefined */
+    /* elsewhere hdr is undefined */
+    return masu_has_emission(normal) ? imageLoad(hdr_image, at).rgb : vec3(0.0);
 }
 
 /* The surface that the G-buffer stores at a pixel. */
@@ -114,13 +116,16 @@ float depth_step(ivec2 before, ivec2 after, float depth)
  * G-buffer's is used. */
 vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 {
-    float x = depth_step(ivec2(max(at.x - 1, 0), at.y), ivec2(min(at.x + 1, size.x - 1), at.y), depth);
-    float y = depth_step(ivec2(at.x, max(at.y - 1, 0)), ivec2(at.x, min(at.y + 1, size.y - 1)), depth);
+    float x = depth_step(ivec2(max(at.x - 1, 0), at.y), ivec2(min(at.x + 1, size.x - 1), at.y),
+                         depth);
+    float y = depth_step(ivec2(at.x, max(at.y - 1, 0)), ivec2(at.x, min(at.y + 1, size.y - 1)),
+                         depth);
     vec2 tangent = vec2(frame.right.w, frame.up.w);
     vec2 slope = vec2(x, -y) * vec2(size) * 0.5 / tangent;
     vec2 ray = masu_ndc(vec2(at) + 0.5, vec2(size)) * vec2(1.0, -1.0) * tangent;
     vec3 view = vec3(slope, depth - dot(slope, ray));
-    vec3 normal = -(frame.right.xyz * (view.x / tangent.x) + frame.up.xyz * (view.y / tangent.y) + frame.forward.xyz * view.z);
+    vec3 normal = -(frame.right.xyz * (view.x / tangent.x) + frame.up.xyz * (view.y / tangent.y) +
+                    frame.forward.xyz * view.z);
     normal = masu_normalize(normal, n);
     return dot(normal, n) > 0.7 ? normal : n;
 }
@@ -128,7 +133,8 @@ vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 
 #ifdef MASU_LIGHTS
 /* Adds the local lights. rel: the point relative to the camera. n: the geometric normal. */
-void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
+void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n,
+                vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     /* From the workgroup's number: light loads are then uniform, not into registers of each
@@ -141,7 +147,8 @@ void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 re
         if (i >= asked.count) {
             break;
         }
-        reached += masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
+        reached += masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u
+                                                                                               : 0u;
     }
     color = sum.light;
     masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);
@@ -160,7 +167,8 @@ void main()
         vec3 color;
         if (!(depth > 0.0)) {
             float air = foggy ? masu_air_depth_sky(direction) : 0.0;
-            color = masu_seen_along(masu_sun_disc(direction), true, frame.background, direction, foggy, air);
+            color = masu_seen_along(masu_sun_disc(direction), true, frame.background, direction,
+                                    foggy, air);
         } else {
             vec4 albedo = texelFetch(albedo_image, ivec2(at), 0);
             uint normal = texelFetch(normal_image, ivec2(at), 0).r;

@@ -15,7 +15,8 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D overlay_image;
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE target;
 
 float light_of(float v)
 {
@@ -31,7 +32,8 @@ void main()
         if (line.a > 0.5) {
             vec3 shown = line.rgb;
             if (masu_encoding != MASU_OUTPUT_SRGB) {
-                shown = masu_encoded(vec3(light_of(shown.r), light_of(shown.g), light_of(shown.b)), push.white);
+                shown = masu_encoded(vec3(light_of(shown.r), light_of(shown.g), light_of(shown.b)),
+                                     push.white);
             }
             MASU_STORE_COLOR(target, at, shown);
         }

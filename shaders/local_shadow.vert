@@ -28,7 +28,8 @@ void main()
     masu_instance_data m = instances[id];
     uint k = min(push.face, uint(MASU_LOCAL_FACES_MAX - 1));
     vec3 thinner = position - push.rise * masu_oct_decode(oct_normal);
-    precise vec3 at = masu_point_seen_from(m, thinner, faces.origin_hi[k].xyz, faces.origin_lo[k].xyz);
+    precise vec3 at = masu_point_seen_from(m, thinner, faces.origin_hi[k].xyz,
+                                           faces.origin_lo[k].xyz);
     precise float x = dot(faces.row0[k].xyz, at) * faces.row0[k].w;
     precise float y = dot(faces.row1[k].xyz, at) * faces.row0[k].w;
     precise float z = dot(faces.row2[k].xyz, at);

@@ -18,7 +18,8 @@ void main()
 {
     uint k = min(uint(gl_VertexIndex) / 6u, uint(MASU_LOCAL_FACES_MAX - 1));
     uint corner = uint(gl_VertexIndex) % 6u;
-    bvec2 far = bvec2(corner == 1u || corner == 2u || corner == 4u, corner == 2u || corner == 4u || corner == 5u);
+    bvec2 far = bvec2(corner == 1u || corner == 2u || corner == 4u,
+                      corner == 2u || corner == 4u || corner == 5u);
     vec2 at = vec2(faces.tile[k].xy + mix(uvec2(0u), faces.tile[k].zz, far));
     out_face = k;
     gl_Position = vec4(at * (2.0 / float(faces.square.z)) - 1.0, 0.0, 1.0);

@@ -202,20 +202,24 @@ void main()
         eye_lo = faces.origin_lo[k].xyz;
         vec3 a = abs(eye_hi);
         coarse = 8.0 * ulp * max(a.x, max(a.y, a.z));
-        vec2 block = (vec2(gl_WorkGroupID.xy) * float(MASU_GROUP) + 0.5 * float(MASU_GROUP) - 0.5 * edge) * width;
+        vec2 block =
+            (vec2(gl_WorkGroupID.xy) * float(MASU_GROUP) + 0.5 * float(MASU_GROUP) - 0.5 * edge) *
+            width;
         vec3 middle = faces.row2[k].xyz + faces.row0[k].xyz * block.x + faces.row1[k].xyz * block.y;
         float stretch = length(middle);
         /* Half the diagonal of the block, plus the march's hit distance. */
         float across = (0.70711 * float(MASU_GROUP) + newton_reach) * width;
         list_parts(middle / stretch, across, faces.origin_lo[k].w * (stretch + across));
         uint evals = 0u;
-        float depth = depth_of_texel(k, (vec2(texel) + 0.5 - 0.5 * edge) * width, any_listed(), evals);
+        float depth = depth_of_texel(k, (vec2(texel) + 0.5 - 0.5 * edge) * width, any_listed(),
+                                     evals);
         masu_count(MASU_COUNTER_SHADOW_EVALS, evals);
         depths[gl_LocalInvocationIndex] = min(uint(clamp(depth, 0.0, 1.0) * 65535.0), 65535u);
         barrier();
         if (gl_LocalInvocationIndex < uint(INVOCATIONS) / 2u) {
             uint i = 2u * gl_LocalInvocationIndex;
-            uvec2 at = gl_WorkGroupID.xy * uvec2(MASU_GROUP) + uvec2(i % uint(MASU_GROUP), i / uint(MASU_GROUP));
+            uvec2 at = gl_WorkGroupID.xy * uvec2(MASU_GROUP) +
+                       uvec2(i % uint(MASU_GROUP), i / uint(MASU_GROUP));
             at = (faces.tile[k].xy + at) / uvec2(2u, 1u);
             MASU_STORE_UINT(pairs_image, at, uvec4(depths[i] | depths[i + 1u] << 16));
         }

@@ -160,13 +160,15 @@ float field_here(ray r, float t)
     return field_at(r, t);
 }
 
-/* The next ray after i that has an interval to march, at step 0 the invocation's first; RAYS or more
- * if there is none, or if too few steps remain to march it to its end. */
+/* The next ray after i that has an interval to march, at step 0 the invocation's first; RAYS or
+ * more if there is none, or if too few steps remain to march it to its end. */
 uint take(uint i, int step)
 {
     MASU_LOOP for (int k = 0; k < RAYS; k++) {
         bool first = step == 0 && k == 0;
-        i = first ? gl_LocalInvocationIndex : !share_rays ? i + uint(INVOCATIONS) : atomicAdd(taken, 1u);
+        i = first         ? gl_LocalInvocationIndex
+            : !share_rays ? i + uint(INVOCATIONS)
+                          : atomicAdd(taken, 1u);
         if (i >= uint(RAYS) || ray_limit[i] > 0.0) {
             break;
         }
@@ -269,7 +271,8 @@ void main()
         }
 #endif
         masu_count(MASU_COUNTER_SDF_EVALS,
-                   MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT && all(lessThan(at, size)) ? 1u : 0u);
+                   MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT && all(lessThan(at, size)) ? 1u
+                                                                                          : 0u);
     }
     masu_count_end();
 }

@@ -23,7 +23,8 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MESH_INDICES, std430) writeonl
 };
 
 #ifdef MASU_MAPS
-layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430) writeonly buffer Texcoords
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430)
+    writeonly buffer Texcoords
 {
     uint texcoord_words[];
 };
@@ -40,13 +41,15 @@ void main()
     }
 #ifdef MASU_MAPS
     if (k >= upload_words[job + 1u]) return;
-    uint vertex = upload_words[job] + k, texcoords = upload_words[job + 7u], colors = upload_words[job + 12u];
+    uint vertex = upload_words[job] + k, texcoords = upload_words[job + 7u],
+         colors = upload_words[job + 12u];
     for (uint i = 0u; i < 2u; i++) {
         uint value = texcoords != 0u ? upload_words[4u * texcoords + 2u * k + i] : 0u;
         texcoord_words[2u * vertex + i] = value;
         if (push.second != 0u) texcoord_words[push.second + 2u * vertex + i] = value;
     }
     if (push.colors != 0u)
-        texcoord_words[push.colors + vertex] = colors != 0u ? upload_words[4u * colors + k] : 0xFFFFFFFFu;
+        texcoord_words[push.colors + vertex] = colors != 0u ? upload_words[4u * colors + k]
+                                                            : 0xFFFFFFFFu;
 #endif
 }

@@ -33,6 +33,7 @@ void main()
     if (k < uint(MASU_TRACE_NODE_UVEC4) * nodes) {
         uint from = 4u * (upload_words[job + 10u] + k);
         masu_trace_static[1u + uint(MASU_TRACE_NODE_UVEC4) * upload_words[job + 8u] + k] =
-            uvec4(upload_words[from], upload_words[from + 1u], upload_words[from + 2u], upload_words[from + 3u]);
+            uvec4(upload_words[from], upload_words[from + 1u], upload_words[from + 2u],
+                  upload_words[from + 3u]);
     }
 }

@@ -23,7 +23,8 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKINNED, std430) buffer Vertic
 };
 
 #ifdef MASU_MOTION
-layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS_VERTICES, std430) writeonly buffer PreviousVertices
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS_VERTICES, std430)
+    writeonly buffer PreviousVertices
 {
     float previous_vertices[];
 };

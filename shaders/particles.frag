@@ -74,7 +74,8 @@ void main()
     vec3 color = own.rgb * alpha;
     if (foggy) {
         vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
-        color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), taken);
+        color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)),
+                                 taken);
     }
     out_color = vec4(masu_sane(color, 0.0, brightest), masu_sane(taken, 0.0, 1.0));
 }

@@ -87,7 +87,8 @@ void main()
     uint at = push.first + uint(PARTICLE_VEC4S) * (uint(gl_VertexIndex) / 6u);
     uint k = uint(gl_VertexIndex) % 6u;
     uint corner = k < 3u ? k : 6u - k; /* 0 1 2, 3 2 1 */
-    vec4 middle = sprites[at], shape = sprites[at + 1u], color = sprites[at + 2u], more = sprites[at + 3u];
+    vec4 middle = sprites[at], shape = sprites[at + 1u], color = sprites[at + 2u],
+         more = sprites[at + 3u];
     uint flags = floatBitsToUint(more.x);
     vec2 place = vec2((corner & 1u) != 0u ? 1.0 : -1.0, corner > 1u ? 1.0 : -1.0);
     vec2 flat_place = place * shape.xy;

@@ -52,7 +52,9 @@ void main()
         depth = sdf || blended ? nearest : depth;
     }
 #endif
-    vec3 rel = what == MASU_PICKED_SKY ? vec3(0.0) : masu_pixel_ray(pixel, size) * (frame.forward.w * masu_rcp(depth));
+    vec3 rel = what == MASU_PICKED_SKY
+                   ? vec3(0.0)
+                   : masu_pixel_ray(pixel, size) * (frame.forward.w * masu_rcp(depth));
     picked[0] = what;
     picked[1] = id;
     picked[2] = floatBitsToUint(depth);

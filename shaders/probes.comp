@@ -81,8 +81,9 @@ void main()
         }
 #ifdef MASU_LIVE_PROBES
         uint live = masu_probe_live() + probe * MASU_PROBE_LIT_WORDS;
-        vec3 mean = masu_sane(vec3(unpackHalf2x16(probe_words[live]), unpackHalf2x16(probe_words[live + 1u]).x),
-                              0.0, 65504.0);
+        vec3 mean = masu_sane(
+            vec3(unpackHalf2x16(probe_words[live]), unpackHalf2x16(probe_words[live + 1u]).x), 0.0,
+            65504.0);
         for (uint k = 0u; k < 9u; k++) {
             vec3 v = mean;
             if (k > 0u) {

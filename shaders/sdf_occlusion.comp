@@ -139,7 +139,8 @@ void make_lists(block b, float sunny, float there)
         atomicMax(farthest[AMBIENT], floatBitsToUint(there));
     }
     barrier();
-    vec4 range = uintBitsToFloat(uvec4(nearest[SUN], farthest[SUN], nearest[AMBIENT], farthest[AMBIENT]));
+    vec4 range =
+        uintBitsToFloat(uvec4(nearest[SUN], farthest[SUN], nearest[AMBIENT], farthest[AMBIENT]));
     for (int i = 0; i < (MASU_SDF_LISTED_COUNT + INVOCATIONS - 1) / INVOCATIONS; i++) {
         uint part = uint(i * INVOCATIONS) + me;
         if (part >= uint(MASU_SDF_LISTED_COUNT)) {

@@ -145,7 +145,9 @@ vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
     vec3 a = abs(p);
     float pixel = 2.0 * frame.up.w / float(size.y) * z;
     float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
-    return followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent), max(1e-3 * pixel, 8.0 * extent)) - p;
+    return followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent),
+                    max(1e-3 * pixel, 8.0 * extent)) -
+           p;
 }
 
 /* Velocity of the surface at a pixel. depth: above 0. */

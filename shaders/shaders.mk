@@ -136,6 +136,17 @@ $(BUILD)/classes/%/packed.h: $(MADE)/tools/pack_spirv $(PACKED:%=$(MADE)/gen/%.o
 	$(V)$< $(MADE)/gen $(call pack_for,$*) > $@
 $(BUILD)/classes/%/shaders.o: src/device/shaders.c $(BUILD)/classes/%/packed.h $(MADE)/gen/permutations.h
 	$(V)$(CC) -I$(@D) $(ALL_FLAGS) -fPIC -fvisibility=hidden -c $< -o $@
+# Classes that leave out the same permutations have the same object: that of the first of them, or of the library.
+alike = $(firstword $(foreach c,$(ALL_CLASSES),$(if $(call differ,$(call parts_of,$(1)),$(call parts_of,$c)),,$c)))
+differ = $(filter-out $(1),$(2))$(filter-out $(2),$(1))
+object_like = $(if $(call differ,$(call parts_of,$(1)),$(call parts_of,$(CLASSES))),$(if $(filter-out \
+    $(1),$(call alike,$(1))),$(BUILD)/classes/$(call alike,$(1))/shaders.o),$(BUILD)/obj/src/device/shaders.o)
+define same_object
+$(BUILD)/classes/$(1)/shaders.o: $(2)
+	@mkdir -p $$(@D)
+	$$(V)cp $$< $$@
+endef
+$(foreach c,$(ALL_CLASSES),$(if $(call object_like,$c),$(eval $(call same_object,$c,$(call object_like,$c)))))
 
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;

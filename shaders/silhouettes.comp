@@ -56,7 +56,8 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1) uniform sampler2D albedo_image;
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 3) uniform sampler2D hdr_image;
-layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 4, r32ui) uniform writeonly uimage2D silhouettes_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 4, r32ui)
+    uniform writeonly uimage2D silhouettes_image;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buffer Exposure
 {
@@ -156,7 +157,8 @@ pixel pixel_at(ivec2 at)
         p.sdf = p.depth != raster_at(at);
         p.normal = masu_unpack_normal(texelFetch(normal_image, at, 0).r);
         float facing = dot(p.normal, masu_pixel_ray(uvec2(at), size));
-        vec2 slope = 2.0 / vec2(size) * vec2(dot(p.normal, frame.right.xyz), -dot(p.normal, frame.up.xyz));
+        vec2 slope = 2.0 / vec2(size) *
+                     vec2(dot(p.normal, frame.right.xyz), -dot(p.normal, frame.up.xyz));
         p.slope = facing < -1e-6 ? p.depth / facing * slope : vec2(0.0);
     }
     return p;
@@ -182,7 +184,8 @@ bool is_crease(pixel own, pixel other, vec2 way)
     float difference = other.depth - dot(other.slope, way) - own.depth;
     vec2 to = -difference * across * masu_rcp(dot(across, across));
     float along = dot(to, way);
-    return (own.sdf || other.sdf) && dot(other.normal, own.normal) < 0.8 && along > 0.0 && dot(to, to) < min(along, 0.5);
+    return (own.sdf || other.sdf) && dot(other.normal, own.normal) < 0.8 && along > 0.0 &&
+           dot(to, to) < min(along, 0.5);
 }
 
 /* Whether a surface ends within the pixel or right next to it; `side`: towards which sides;
@@ -208,7 +211,8 @@ bool has_edge(ivec2 at, out vec2 side, out bool between)
         float going_on = own.depth + dot(own.slope, way);
         bool before = own.sdf && min(own.depth, going_on) > other * gap;
         bool behind = other > max(own.depth, going_on) * gap && other != raster_at(to);
-        bool bends = own.depth > 0.0 && other > 0.0 && abs(other - going_on) > 0.125 * (gap - 1.0) * other;
+        bool bends = own.depth > 0.0 && other > 0.0 &&
+                     abs(other - going_on) > 0.125 * (gap - 1.0) * other;
         if (before || behind || (bends && is_crease(own, pixel_at(to), way))) {
             between = between || dot(side, way) < 0.0;
             side = mix(side, way, notEqual(way, vec2(0.0)));
@@ -232,7 +236,8 @@ float raster_within(ivec2 at, vec2 place)
         vec2 before = depth - vec2(raster_at(ivec2(low.x, at.y)), raster_at(ivec2(at.x, low.y)));
         vec2 after = vec2(raster_at(ivec2(high.x, at.y)), raster_at(ivec2(at.x, high.y))) - depth;
         bvec2 earlier = lessThan(abs(before), abs(after));
-        earlier = bvec2(low.x < at.x && (earlier.x || high.x == at.x), low.y < at.y && (earlier.y || high.y == at.y));
+        earlier = bvec2(low.x < at.x && (earlier.x || high.x == at.x),
+                        low.y < at.y && (earlier.y || high.y == at.y));
         vec2 slope = mix(after, before, earlier);
         slope = mix(slope, vec2(0.0), greaterThan(abs(slope), vec2(0.1 * depth)));
         depth += dot(place, slope);
@@ -292,7 +297,9 @@ ivec2 like_at(ivec2 at, vec2 place, float depth, bool sdf, float width, out floa
     ivec2 like = at;
     off = 1e30;
     MASU_LOOP for (int k = 0; k < 3; k++) {
-        ivec2 way = k == 0 ? ivec2(0) : k == 1 ? ivec2(place.x > 0.0 ? 1 : -1, 0) : ivec2(0, place.y > 0.0 ? 1 : -1);
+        ivec2 way = k == 0   ? ivec2(0)
+                    : k == 1 ? ivec2(place.x > 0.0 ? 1 : -1, 0)
+                             : ivec2(0, place.y > 0.0 ? 1 : -1);
         if (!is_inside(at + way)) {
             continue;
         }
@@ -366,7 +373,8 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
             /* Sun visibility, from the pixel's light without and with sun. 1 if it faces away. */
             float more = masu_luminance(sun);
             float without = masu_luminance(around);
-            seen = more > 0.05 * without ? clamp((masu_luminance(hdr) - without) / more, 0.0, 1.0) : 1.0;
+            seen = more > 0.05 * without ? clamp((masu_luminance(hdr) - without) / more, 0.0, 1.0)
+                                         : 1.0;
         }
         here = around + seen * sun;
         there = first ? here : there;
@@ -418,7 +426,8 @@ vec3 radiance_at(ivec2 at, vec2 place)
 ivec2 pixel_of(uint entry)
 {
     uint own = listed[entry] & uint(INVOCATIONS - 1);
-    return ivec2(gl_WorkGroupID.xy * uint(MASU_GROUP)) + ivec2(own & uint(MASU_GROUP - 1), own / uint(MASU_GROUP));
+    return ivec2(gl_WorkGroupID.xy * uint(MASU_GROUP)) +
+           ivec2(own & uint(MASU_GROUP - 1), own / uint(MASU_GROUP));
 }
 
 /* Marches ray `next` of 3 for an entry of the list. */
@@ -464,7 +473,8 @@ uint march_edges(uint entry)
     if (entry == uint(INVOCATIONS)) {
         return 0u;
     }
-    vec3 rays = light[entry * uint(RAYS)] + light[entry * uint(RAYS) + 1u] + light[entry * uint(RAYS) + 2u];
+    vec3 rays = light[entry * uint(RAYS)] + light[entry * uint(RAYS) + 1u] +
+                light[entry * uint(RAYS) + 2u];
     vec3 middle = middle_of(entry);
     vec3 mean = mix(rays * (1.0 / float(RAYS)), middle, middle_share);
     return masu_edge_differs(mean, middle) ? masu_pack_edge(mean) : 0u;

@@ -71,20 +71,39 @@ uvec3 exponents_of(vec3 extent)
     return clamp(e, uvec3(1u), uvec3(170u));
 }
 
-/* Boxes of the children, as bytes. */
-void quantise(masu_box of[4], uint count, masu_box all, inout uvec4 a, inout uvec4 b, inout uvec4 c)
+/* The boxes of four children. They rotate, since GPUs put an indexed array into memory. */
+struct masu_boxes {
+    masu_box first, second, third, last;
+};
+
+void rotate(inout masu_boxes of, masu_box box)
+{
+    of.first = of.second;
+    of.second = of.third;
+    of.third = of.last;
+    of.last = box;
+}
+
+uint type_of(uint types, uint child)
+{
+    return types >> (24u + 2u * child) & 3u;
+}
+
+/* Boxes of the children, as bytes; inverted where there is no child. */
+void quantise(masu_boxes of, masu_box all, inout uvec4 a, out uvec4 b, inout uvec4 c)
 {
     uvec3 e = exponents_of(all.high - all.low);
     vec3 scale = uintBitsToFloat(e << 23);
     uvec3 lows = uvec3(0u), highs = uvec3(0u);
     for (uint i = 0u; i < 4u; i++) {
-        vec3 low = vec3(255.0), high = vec3(0.0); /* inverted: empty */
-        if (i < count) {
-            low = clamp(floor((of[i].low - all.low) / scale - 0.001), vec3(0.0), vec3(255.0));
-            high = clamp(ceil((of[i].high - all.low) / scale + 0.001), vec3(0.0), vec3(255.0));
+        vec3 low = vec3(255.0), high = vec3(0.0);
+        if (type_of(a.w, i) != 0u) {
+            low = clamp(floor((of.first.low - all.low) / scale - 0.001), vec3(0.0), vec3(255.0));
+            high = clamp(ceil((of.first.high - all.low) / scale + 0.001), vec3(0.0), vec3(255.0));
         }
-        lows |= uvec3(low) << (8u * i);
-        highs |= uvec3(high) << (8u * i);
+        rotate(of, all);
+        lows = lows >> 8 | uvec3(low) << 24;
+        highs = highs >> 8 | uvec3(high) << 24;
     }
     a = uvec4(floatBitsToUint(all.low), (a.w & 0xFF000000u) | e.x | e.y << 8 | e.z << 16);
     b = uvec4(lows, highs.x);
@@ -96,28 +115,28 @@ void fit(uint node, uint first, uint first_box, uint sweep)
 {
     uint at = 1u + uint(MASU_TRACE_NODE_UVEC4) * node, own = 2u * (first_box + node - first);
     if (boxes[own].w != 0u) return;
-    uvec4 a = masu_trace_static[at], b = masu_trace_static[at + 1u], c = masu_trace_static[at + 2u];
-    uint child = 2u * (first_box + c.z - first), item = masu_trace_static[0].x + c.w, count = 0u;
-    masu_box of[4] = masu_box[4](nothing(), nothing(), nothing(), nothing());
+    uvec4 a = masu_trace_static[at], b, c = masu_trace_static[at + 2u];
+    uint child = 2u * (first_box + c.z - first), item = masu_trace_static[0].x + c.w;
     masu_box all = nothing();
+    masu_boxes of = masu_boxes(all, all, all, all);
     bool ready = true;
     for (uint i = 0u; i < 4u; i++) {
-        uint type = a.w >> (24u + 2u * i) & 3u;
-        if (type == 0u) break;
+        uint type = type_of(a.w, i);
+        masu_box box = nothing();
         if (type == 1u) {
             uvec4 low = boxes[child], high = boxes[child + 1u];
             ready = ready && low.w != 0u && low.w < sweep;
-            of[i] = masu_box(uintBitsToFloat(low.xyz), uintBitsToFloat(high.xyz));
+            box = masu_box(uintBitsToFloat(low.xyz), uintBitsToFloat(high.xyz));
             child += 2u;
-        } else {
-            of[i] = triangle(item++);
-            if (type == 3u) add(of[i], triangle(item++));
+        } else if (type != 0u) {
+            box = triangle(item++);
+            if (type == 3u) add(box, triangle(item++));
         }
-        add(all, of[i]);
-        count++;
+        add(all, box);
+        rotate(of, box);
     }
     if (!ready) return;
-    quantise(of, count, all, a, b, c);
+    quantise(of, all, a, b, c);
     masu_trace_static[at] = a;
     masu_trace_static[at + 1u] = b;
     masu_trace_static[at + 2u] = c;

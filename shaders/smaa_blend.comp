@@ -22,7 +22,8 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D picture;
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE smooth_image;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE smooth_image;
 
 const int side = MASU_TILE + 1;
 const int threads = MASU_GROUP * MASU_GROUP;

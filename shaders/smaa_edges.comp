@@ -27,7 +27,8 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D picture; /* display-encoded */
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE smooth_image;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE smooth_image;
 
 /* Luma of the tile, of two pixels to the left and above, of one to the right and below. */
 const int side = MASU_TILE + 3;

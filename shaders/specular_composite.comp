@@ -81,7 +81,8 @@ void gather(inout gathering s, ivec2 off)
         return;
     }
     vec3 color = masu_sane(texelFetch(specular_image, texel, 0).rgb, 0.0, 65504.0);
-    float away = abs(masu_off(s.plane, masu_guide_place(uvec2(texel), g.pixel, 2u), g.depth)) * s.narrow;
+    float away = abs(masu_off(s.plane, masu_guide_place(uvec2(texel), g.pixel, 2u), g.depth)) *
+                 s.narrow;
     float alike = max(dot(g.normal, s.n), 0.0);
     alike *= alike;
     alike *= alike;
@@ -107,8 +108,9 @@ vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
     /* A texel is two pixels wide: a point that is off the plane by half of that is another
      * surface. */
     float tolerance = z * frame.up.w * 2.0 / float(pc.render_height);
-    gathering s = gathering(ivec2(corner), ivec2(pc.output_width, pc.output_height) - 1, place - corner,
-                            masu_flat_through(point, n), n, 1.0 / tolerance, vec4(0.0), vec4(0.0), 1e30, 0.0);
+    gathering s = gathering(ivec2(corner), ivec2(pc.output_width, pc.output_height) - 1,
+                            place - corner, masu_flat_through(point, n), n, 1.0 / tolerance,
+                            vec4(0.0), vec4(0.0), 1e30, 0.0);
     gather(s, ivec2(0, 0));
     gather(s, ivec2(1, 0));
     gather(s, ivec2(0, 1));
@@ -151,10 +153,12 @@ void follow(uvec2 at, uvec2 texel, float depth, vec3 n)
     image.x = length(image) < least && length(surface) > least ? least : image.x;
     vec2 was = (vec2(at) + 0.5 + moved.xy) / size * 2.0 - 1.0 + previous.jitter.xy;
     vec2 seen = was + (image - surface) / size * 2.0;
-    vec3 lean = vec3(dot(n, previous.right.xyz), -dot(n, previous.up.xyz), dot(n, previous.forward.xyz));
+    vec3 lean = vec3(dot(n, previous.right.xyz), -dot(n, previous.up.xyz),
+                     dot(n, previous.forward.xyz));
     float farther = dot(lean, vec3(was, 1.0)) * masu_rcp(dot(lean, vec3(seen, 1.0)));
     if (farther > 0.25 && farther < 4.0) { /* not beyond the horizon */
-        MASU_STORE_HALF(velocity_image, at, vec4(image - jitter, (1.0 + moved.z) * farther - 1.0, 1.0));
+        MASU_STORE_HALF(velocity_image, at,
+                        vec4(image - jitter, (1.0 + moved.z) * farther - 1.0, 1.0));
     }
 }
 #endif
@@ -183,7 +187,8 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         bool limited = false;
         bool whole = false; /* the four pixels are one surface */
 #ifdef MASU_FINE
-        uint word = push.fine != 0u ? texelFetch(fine_image, ivec2(texel), 0)[number] : masu_fine_none;
+        uint word = push.fine != 0u ? texelFetch(fine_image, ivec2(texel), 0)[number]
+                                    : masu_fine_none;
         if (word != masu_fine_none) {
             masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
             own = masu_unpack_fine(word);

@@ -106,7 +106,9 @@ void main()
                 float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, point);
                 float radius = masu_specular_reach(g, point, far, curvature);
                 radius = clamp(radius * (1.0 + 2.0 / frames), 1.0, widest);
-                float turn = float(masu_trace_noise(masu_noise_index(texel.x, texel.y, 3u)) & 0xFFFFu) / 65536.0;
+                float turn = float(masu_trace_noise(masu_noise_index(texel.x, texel.y, 3u)) &
+                                   0xFFFFu) /
+                             65536.0;
                 ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
                 masu_flat flat_here = masu_flat_through(point, g.normal);
                 float narrow = 1.0 / max(width, 1e-9);

@@ -83,7 +83,9 @@ vec4 own_way(uvec2 pixel)
         return vec4(0.0);
     }
     vec4 velocity = texelFetch(velocity_image, ivec2(pixel), 0);
-    ivec2 at = ivec2(pixel) + ivec2(round(masu_unjittered(masu_sane(velocity, -32768.0, 32768.0).xy, vec2(pc.render_width, pc.render_height))));
+    ivec2 at = ivec2(pixel) +
+               ivec2(round(masu_unjittered(masu_sane(velocity, -32768.0, 32768.0).xy,
+                                           vec2(pc.render_width, pc.render_height))));
     if (!(velocity.w > 0.0) || any(lessThan(at, ivec2(0))) ||
         any(greaterThanEqual(at, ivec2(frame.history.yz))) ||
         !was_it(at >> 1, masu_unpack_normal(texelFetch(normal_image, ivec2(pixel), 0).r))) {
@@ -107,7 +109,8 @@ vec4 look(uvec2 pixel, vec2 moved, masu_guide g)
     vec4 sum = vec4(0.0);
     for (int k = 0; k < 4; k++) {
         ivec2 off = ivec2(k & 1, k >> 1);
-        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
+        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) *
+                         mix(1.0 - part.y, part.y, float(off.y));
         sum += bilinear * old_pixel(ivec2(corner) + off, g);
     }
     return sum.a > 0.2 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
@@ -195,8 +198,10 @@ void main()
                 own = min(own, g.mixed ? 4.0 : 100.0 * g.roughness * g.roughness);
             }
             float share = max(1.0 / (own + 1.0), masu_time_share(reach));
-            share = masu_worthy_share(share, masu_drawn_worth(texelFetch(ray_image, ivec2(texel), 0).g));
-            vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), masu_turn(frame.history.x));
+            share = masu_worthy_share(share,
+                                      masu_drawn_worth(texelFetch(ray_image, ivec2(texel), 0).g));
+            vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)),
+                                          masu_turn(frame.history.x));
             float dither = noise.x;
             if (!(g.roughness > masu_mirror_roughness)) {
                 /* Each frame traces the same ray. With a changing dither the rounding would
@@ -205,7 +210,8 @@ void main()
                 share = 1.0;
                 dither = 0.5;
             }
-            vec2 around = g.roughness > masu_fine_narrow ? sparks_around(ivec2(texel)) : vec2(0.0, masu_huge);
+            vec2 around = g.roughness > masu_fine_narrow ? sparks_around(ivec2(texel))
+                                                         : vec2(0.0, masu_huge);
             for (uint k = 0u; k < 4u; k++) {
                 uvec2 pixel = masu_guide_place(texel, k, 2u);
                 vec4 old = known && has_old() && !g.mixed ? look(pixel, moved, g) : vec4(0.0);

@@ -42,7 +42,8 @@ vec3 met_before(uvec4 hit)
         vec3 object = uintBitsToFloat(masu_trace_vertices[triangle.x].xyz) * (1.0 - b.x - b.y) +
                       uintBitsToFloat(masu_trace_vertices[triangle.y].xyz) * b.x +
                       uintBitsToFloat(masu_trace_vertices[triangle.z].xyz) * b.y;
-        return masu_trace_before(traced, vec4(object, 1.0)) - masu_trace_now(traced, vec4(object, 1.0));
+        return masu_trace_before(traced, vec4(object, 1.0)) -
+               masu_trace_now(traced, vec4(object, 1.0));
     }
 #endif
     return masu_unpack_sdf_motion(hit.y);
@@ -85,7 +86,8 @@ uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
     /* In a loop, so that the matrices are loaded where they are used, not kept in registers. */
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         float image = masu_image_far(far, i == 0 ? curvature / cosine : curvature * cosine);
-        vec4 shown = image_moved(point, along, image, mix(shift, thing, image / max(far, 1e-9)), eyes, size);
+        vec4 shown = image_moved(point, along, image, mix(shift, thing, image / max(far, 1e-9)),
+                                 eyes, size);
         if (!(shown.w > 0.0)) {
             return masu_unmoved;
         }
@@ -95,7 +97,8 @@ uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
         }
         velocity = shown.xy;
         vec3 aside = g.normal + along * cosine;
-        lean = vec2(dot(aside, frame.right.xyz) / frame.right.w, -dot(aside, frame.up.xyz) / frame.up.w);
+        lean = vec2(dot(aside, frame.right.xyz) / frame.right.w,
+                    -dot(aside, frame.up.xyz) / frame.up.w);
         steep = dot(lean, lean);
         if (!(curvature > 0.0 && steep > 1e-6)) {
             break;

@@ -16,7 +16,8 @@
 #define MASU_TRACE_POLYGONS
 #include "trace/scene.glsl"
 #include "trace/texels.glsl"
-layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TOP_LEVEL) uniform accelerationStructureEXT masu_trace_top;
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TOP_LEVEL)
+    uniform accelerationStructureEXT masu_trace_top;
 #include "trace/query.glsl"
 #include "specular/origin.glsl"
 #include "specular/ray.glsl"
@@ -40,8 +41,9 @@ void main()
             masu_ray_hit hit = masu_trace(origin, direction, 0.0, frame.trace_anchor.w);
             if (hit.t >= 0.0) {
                 vec2 b = masu_sane(vec4(hit.barycentrics, 0.0, 0.0), 0.0, 1.0).xy;
-                MASU_STORE_UINT(hit_image, texel, uvec4(floatBitsToUint(hit.t), hit.instance, hit.triangle,
-                                                        packUnorm2x16(b)));
+                MASU_STORE_UINT(
+                    hit_image, texel,
+                    uvec4(floatBitsToUint(hit.t), hit.instance, hit.triangle, packUnorm2x16(b)));
                 masu_count(MASU_COUNTER_SPECULAR_HITS, 1u);
             }
         }

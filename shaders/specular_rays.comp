@@ -107,7 +107,8 @@ void main()
             vec3 v_local = masu_axes_in(f, v);
             uint number = frame.history.x;
             uint word = noise_at(texel, 0u);
-            vec2 u = push.traced_size == 1u ? masu_noise2(word, number) : masu_turn_noise2(word, masu_turn(number));
+            vec2 u = push.traced_size == 1u ? masu_noise2(word, number)
+                                            : masu_turn_noise2(word, masu_turn(number));
             float alpha = masu_alpha(masu_traced_roughness(p.surface));
             uint turn = 0u;
             masu_bsdf b = masu_bsdf_make(p.surface, n, v);
@@ -133,7 +134,8 @@ void main()
             ray.x = masu_pack_direction(kept);
             if (push.accumulate != 0u) {
                 uint bits = masu_hash(masu_hash(number) ^ noise_at(texel, 2u));
-                ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn) : vec3(0.0),
+                ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn)
+                                               : vec3(0.0),
                                          float(bits >> 8) * (1.0 / 16777216.0));
             } else {
                 ray.y = masu_pack_drawn(r.pdf, relative_worth(p.surface, b, r, l));

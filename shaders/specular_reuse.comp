@@ -65,7 +65,8 @@ float weight_of(lobe own, vec3 l, uint drawn)
         return 0.0;
     }
     vec3 h = masu_normalize(own.v + local, vec3(0.0, 0.0, 1.0));
-    return masu_sane(masu_vndf_density(own.v, h, own.alpha) / density, 0.0, most_weight) * masu_drawn_worth(drawn);
+    return masu_sane(masu_vndf_density(own.v, h, own.alpha) / density, 0.0, most_weight) *
+           masu_drawn_worth(drawn);
 }
 
 /* Sum of radiance times weight, and of weights in a. The distance is averaged by its reciprocal:
@@ -112,29 +113,35 @@ void main()
             lobe own;
             own.point = masu_specular_point(texel, g);
             own.f = masu_axes_of(g.normal);
-            own.v = masu_vndf_view(masu_axes_in(own.f, -masu_normalize(own.point, frame.forward.xyz)));
+            own.v =
+                masu_vndf_view(masu_axes_in(own.f, -masu_normalize(own.point, frame.forward.xyz)));
             own.alpha = masu_vndf_alpha(masu_alpha(g.roughness));
             float width = masu_texel_width(g);
             uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
             vec4 sum = vec4(0.0);
             float nearness = 0.0;
             /* A minimum weight, so that there is a result if no other ray fits. */
-            add(sum, nearness, max(weight_of(own, masu_unpack_direction(ray.x), ray.y), 1e-3), light);
+            add(sum, nearness, max(weight_of(own, masu_unpack_direction(ray.x), ray.y), 1e-3),
+                light);
             float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, own.point);
-            float radius = clamp(masu_specular_reach(g, own.point, light.a, curvature), 1.5, widest);
+            float radius = clamp(masu_specular_reach(g, own.point, light.a, curvature), 1.5,
+                                 widest);
             uint quad = (texel.x & 1u) + 2u * (texel.y & 1u);
-            vec2 turn = masu_noise2(masu_trace_noise(masu_noise_index(texel.x >> 1, texel.y >> 1, 2u)),
-                                    frame.history.x);
+            vec2 turn =
+                masu_noise2(masu_trace_noise(masu_noise_index(texel.x >> 1, texel.y >> 1, 2u)),
+                            frame.history.x);
             ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
             for (uint k = 0u; k < uint(MASU_REUSE_TAPS_MAX); k++) {
                 if (k >= push.taps) {
                     break;
                 }
                 float number = float(4u * k + quad) + turn.y;
-                float angle = 6.2831853 * fract(0.38196601 * float(4u * k + quad) + turn.x) - 3.1415927;
+                float angle = 6.2831853 * fract(0.38196601 * float(4u * k + quad) + turn.x) -
+                              3.1415927;
                 float r = radius * sqrt(number / float(4u * push.taps));
                 ivec2 at = ivec2(texel) + ivec2(round(r * vec2(cos(angle), sin(angle))));
-                if (at == ivec2(texel) || any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
+                if (at == ivec2(texel) || any(lessThan(at, ivec2(0))) ||
+                    any(greaterThan(at, last))) {
                     continue;
                 }
                 neighbour(own, g, at, width, sum, nearness);

@@ -66,7 +66,8 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
     /* Each step leaves few values for the next: fewer registers. */
     vec2 seen = vec2(1.0);
 #ifdef MASU_SUN_MAP
-    /* Towards the sun, but not frame.sun_direction, which would stay in registers until the sun is shaded. */
+    /* Towards the sun, but not frame.sun_direction, which would stay in registers until the sun is
+     * shaded. */
     if (dot(m.normal, shadow.row2[0].xyz) > 0.0) {
         seen.x = masu_sun_seen(rel, m.normal, dot(rel, frame.forward.xyz));
     }
@@ -103,7 +104,8 @@ vec3 hit_light(uvec4 hit, masu_guide g, vec3 point, vec3 direction, float t)
 #ifdef MASU_TRACE_POLYGONS
     if ((hit.y & MASU_HIT_SDF) == 0u) {
         /* Width of the lobe at the hit: half of the lobe is within its roughness squared. */
-        float width = masu_specular_width(g) + t * (g.roughness * g.roughness + frame.up.w * 2.0 / float(pc.render_height));
+        float width = masu_specular_width(g) +
+                      t * (g.roughness * g.roughness + frame.up.w * 2.0 / float(pc.render_height));
         m = met_polygon(hit, direction, width);
     } else
 #endif
@@ -111,7 +113,8 @@ vec3 hit_light(uvec4 hit, masu_guide g, vec3 point, vec3 direction, float t)
         m = met_sdf(hit);
     }
 #ifdef MASU_LIGHTS
-    if (masu_shared_lights && push.accumulate == 0u && any(greaterThan(m.surface.emissive, vec3(0.0)))) {
+    if (masu_shared_lights && push.accumulate == 0u &&
+        any(greaterThan(m.surface.emissive, vec3(0.0)))) {
         vec3 eye = -masu_normalize(point, g.normal);
         m.surface.emissive *= masu_met_share(rel, point, g.normal, eye, g.roughness);
     }
@@ -129,10 +132,12 @@ vec4 light_of(uvec2 texel, masu_guide g)
     vec4 light;
     if (t >= 0.0) {
         light = vec4(hit_light(hit, g, point, direction, t), t);
-        light.rgb = masu_seen_along(light.rgb, false, vec4(0.0, 0.0, 0.0, 1.0), direction, foggy, air);
+        light.rgb = masu_seen_along(light.rgb, false, vec4(0.0, 0.0, 0.0, 1.0), direction, foggy,
+                                    air);
     } else {
         light = vec4(vec3(0.0), frame.trace_anchor.w);
-        light.rgb = masu_seen_along(light.rgb, true, vec4(0.0, 0.0, 0.0, 1.0), direction, foggy, air);
+        light.rgb = masu_seen_along(light.rgb, true, vec4(0.0, 0.0, 0.0, 1.0), direction, foggy,
+                                    air);
     }
     if (push.accumulate != 0u) {
         light.rgb *= masu_unpack_shared(texelFetch(ray_image, ivec2(texel), 0).g);

@@ -45,7 +45,8 @@ vec4 look(ivec2 texel, vec2 moved)
     for (int k = 0; k < 4; k++) {
         ivec2 off = ivec2(k & 1, k >> 1);
         ivec2 at = ivec2(corner) + off;
-        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
+        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) *
+                         mix(1.0 - part.y, part.y, float(off.y));
         if (!(bilinear > 0.0) || any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
             continue;
         }
@@ -85,8 +86,8 @@ void main()
                     count += 1.0;
                 }
                 vec3 mean = sum / max(count, 1.0);
-                vec3 wide = clamp_width * sqrt(max(squares / max(count, 1.0) - mean * mean, 0.0)) + 1e-3 +
-                            0.02 * mean.x;
+                vec3 wide = clamp_width * sqrt(max(squares / max(count, 1.0) - mean * mean, 0.0)) +
+                            1e-3 + 0.02 * mean.x;
                 vec3 from = masu_ycocg(old.rgb) - mean;
                 vec3 times = abs(from) / wide;
                 float most = max(max(times.x, times.y), max(times.z, 1.0));

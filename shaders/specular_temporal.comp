@@ -110,8 +110,10 @@ masu_flat flat_before(vec2 place, float z, vec3 n)
     vec2 aside = vec2(dot(previous.right.xyz, n), -dot(previous.up.xyz, n));
     masu_flat f;
     f.lean = aside * (2.0 / vec2(frame.history.yz));
-    f.base = dot(previous.forward.xyz, n) + dot(aside, previous.jitter.xy - 1.0) + dot(f.lean, vec2(0.5));
-    precise float at = (f.base + dot(f.lean, place - 0.5)) * z; /* one value to keep, not two factors */
+    f.base = dot(previous.forward.xyz, n) + dot(aside, previous.jitter.xy - 1.0) +
+             dot(f.lean, vec2(0.5));
+    /* one value to keep, not two factors */
+    precise float at = (f.base + dot(f.lean, place - 0.5)) * z;
     f.at = at;
     return f;
 }
@@ -119,7 +121,8 @@ masu_flat flat_before(vec2 place, float z, vec3 n)
 /* Distance of a texel of the previous frame from that plane. */
 float off_before(masu_flat f, ivec2 texel, masu_guide o)
 {
-    return (f.base + dot(f.lean, vec2(masu_guide_place(uvec2(texel), o.pixel, 2u)))) / o.depth - f.at;
+    return (f.base + dot(f.lean, vec2(masu_guide_place(uvec2(texel), o.pixel, 2u)))) / o.depth -
+           f.at;
 }
 
 /* moved: pixels of this frame's render size. */
@@ -142,11 +145,13 @@ past look(here h, vec2 moved)
     [[dont_unroll]] for (int k = 0; k < 4; k++) {
         ivec2 off = ivec2(k & 1, k >> 1);
         ivec2 at = ivec2(corner) + off;
-        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
-        if (bilinear > 0.0 && all(greaterThanEqual(at, ivec2(0))) && all(lessThanEqual(at, h.last))) {
+        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) *
+                         mix(1.0 - part.y, part.y, float(off.y));
+        if (bilinear > 0.0 && all(greaterThanEqual(at, ivec2(0))) &&
+            all(lessThanEqual(at, h.last))) {
             masu_guide o = masu_unpack_guide(texelFetch(old_guide_image, at, 0).rg);
-            if (o.there && !(abs(o.roughness - h.g.roughness) > 0.1) && !(dot(o.normal, h.g.normal) < 0.8) &&
-                abs(off_before(h.was, at, o)) < h.width) {
+            if (o.there && !(abs(o.roughness - h.g.roughness) > 0.1) &&
+                !(dot(o.normal, h.g.normal) < 0.8) && abs(off_before(h.was, at, o)) < h.width) {
                 vec4 mean = texelFetch(old_mean_image, at, 0);
                 if (mean.a >= 0.0 && masu_finite(mean)) {
                     p.mean += bilinear * mean;
@@ -195,7 +200,8 @@ present gather(here h, vec3 point)
                 nearness += masu_rcp(max(masu_sane(light.a, 0.0, 65504.0), 1e-4));
                 uint moved = texelFetch(motion_image, at, 0).r;
                 if (moved != masu_unmoved) {
-                    vec2 motion = masu_sane(vec4(unpackHalf2x16(moved), 0.0, 0.0), -65504.0, 65504.0).xy;
+                    vec2 motion =
+                        masu_sane(vec4(unpackHalf2x16(moved), 0.0, 0.0), -65504.0, 65504.0).xy;
                     r.motion += motion;
                     r.motions += 1.0;
                     least = min(least, motion);
@@ -215,7 +221,8 @@ present gather(here h, vec3 point)
     vec2 larger = max(abs(least + h.shift), abs(most + h.shift));
     bool differ = any(greaterThan(most - least, apart_pixels + apart_share * larger));
     r.motion = differ ? front : r.motion / max(r.motions, 1.0);
-    r.flags = masu_pack_far(count / max(nearness, 1e-9)) | (differ ? several : 0u) | (h.g.mixed ? mixed : 0u);
+    r.flags = masu_pack_far(count / max(nearness, 1e-9)) | (differ ? several : 0u) |
+              (h.g.mixed ? mixed : 0u);
     return r;
 }
 
@@ -284,7 +291,8 @@ void main()
             vec2 size = vec2(pc.render_width, pc.render_height);
             uvec2 pixel = masu_guide_place(texel, h.g.pixel, 2u);
             h.width = masu_texel_width(h.g);
-            precise vec2 shift = (previous.jitter.zw - frame.jitter.zw) * (0.5 * size); /* as above */
+            /* as above */
+            precise vec2 shift = (previous.jitter.zw - frame.jitter.zw) * (0.5 * size);
             h.shift = shift;
             present now = gather(h, masu_specular_point(texel, h.g));
             float frames = 1.0, weight = 0.0, off = 0.0;
@@ -296,7 +304,9 @@ void main()
                 h.scale = vec2(frame.history.yz) / size;
                 h.last = (ivec2(frame.history.yz) + 1) / 2 - 1;
                 h.was = flat_before((vec2(pixel) + 0.5 + velocity.xy) * h.scale,
-                                    frame.forward.w * masu_rcp(h.g.depth) * (1.0 + velocity.z) * per_near, h.g.normal);
+                                    frame.forward.w * masu_rcp(h.g.depth) * (1.0 + velocity.z) *
+                                        per_near,
+                                    h.g.normal);
                 h.width *= max(1.0, size.y / float(frame.history.z)) * per_near;
                 if (!(now.motions > 0.0) || !are_apart(now.motion, velocity.xy)) {
                     now.motion = velocity.xy;
@@ -350,7 +360,9 @@ void main()
                     frames = min(frames, moves ? most_outline_moving : most_outline);
                 }
                 /* Clamp along the line to the current mean. */
-                vec3 wide = clamp_width * max(now.sigma, old_sigma * vec3(1.0, chroma_width, chroma_width)) + 1e-3 + 0.02 * now.mean.x;
+                vec3 wide = clamp_width *
+                                max(now.sigma, old_sigma * vec3(1.0, chroma_width, chroma_width)) +
+                            1e-3 + 0.02 * now.mean.x;
                 vec3 from = masu_ycocg(history.rgb) - now.mean;
                 vec3 times = abs(from) / wide;
                 float most = max(times.x, max(times.y, times.z));
@@ -366,11 +378,13 @@ void main()
                 color = mix(color, masu_tamed(texelFetch(own_light_image, h.texel, 0).rgb), alone);
                 /* Rays reused from neighbours are already weighted. */
                 float worth = masu_drawn_worth(texelFetch(ray_image, h.texel, 0).g);
-                share = masu_worthy_share(share, push.reused != 0u ? mix(1.0, worth, alone) : worth);
+                share = masu_worthy_share(share,
+                                          push.reused != 0u ? mix(1.0, worth, alone) : worth);
                 y = masu_luma(color);
                 float most_y = max((1.0 + near_mean) * luma.x + usual * masu_sqrt(luma.y), 0.0);
                 /* After a rejected history (frames) the usual brightness is not defined. */
-                if (frames > 1.0 && masu_is_moving(motion) && h.g.roughness > masu_mirror_roughness) {
+                if (frames > 1.0 && masu_is_moving(motion) &&
+                    h.g.roughness > masu_mirror_roughness) {
                     /* y is not limited: its square determines the next frame's limit. */
                     color = masu_no_brighter(color, most_y);
                 }

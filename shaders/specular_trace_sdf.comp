@@ -79,7 +79,8 @@ uvec4 hit_of(reflected m, float t, bool known, inout uint evals)
     vec4 albedo;
     uint normal;
     masu_pack_met(n, s, albedo, normal);
-    return uvec4(floatBitsToUint(max(t - m.apex, 0.0)), masu_pack_sdf_motion(moved(part, p)), normal, packUnorm4x8(albedo));
+    return uvec4(floatBitsToUint(max(t - m.apex, 0.0)), masu_pack_sdf_motion(moved(part, p)),
+                 normal, packUnorm4x8(albedo));
 }
 
 void main()
@@ -99,7 +100,8 @@ void main()
             float width = masu_specular_width(g);
             float lift = 0.125 * width + 9.6e-7 * far;
             float spread = frame.up.w * 2.0 / float(pc.render_height);
-            reflected m = reflected_ray(point + g.normal * lift, direction, width, spread, lift, longest);
+            reflected m = reflected_ray(point + g.normal * lift, direction, width, spread, lift,
+                                        longest);
             uint evals = MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? 1u : 0u;
             float t = march_reflected(m, evals);
             bool known = !(t >= 0.0);

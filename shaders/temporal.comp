@@ -12,8 +12,8 @@
  * counts samples. upscale/mean.glsl defines how the history is stored, upscale/history.glsl how it
  * is read.
  *
- * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size); push.texel_*: 1 / size of
- * the image of colour; history.glsl documents the rest.
+ * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size);
+ * push.texel_*: 1 / size of the image of colour; history.glsl documents the rest.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -62,15 +62,19 @@ void main()
     bool stays = masu_has_stayed(found);
     vec2 slope = stays ? 2.0 * steps : 0.6 * steps + 0.4;
     float top = stays ? 1.5 : 1.0;
-    vec2 first = clamp(top - abs(f) * slope, 0.0, 1.0), second = clamp(top - abs(1.0 - f) * slope, 0.0, 1.0);
+    vec2 first = clamp(top - abs(f) * slope, 0.0, 1.0),
+         second = clamp(top - abs(1.0 - f) * slope, 0.0, 1.0);
     vec2 both = first + second;
     float count = old.mean.a + both.x * both.y;
     float rest = max(1.0 - count, 0.0);
     f = clamp(f, 0.0, 1.0);
     vec4 around = vec4(1.0 - f.x, f.x, f.x, 1.0 - f.x) * vec4(f.y, f.y, 1.0 - f.y, 1.0 - f.y);
-    vec4 weights = vec4(first.x, second.x, second.x, first.x) * vec4(second.y, second.y, first.y, first.y);
+    vec4 weights = vec4(first.x, second.x, second.x, first.x) *
+                   vec4(second.y, second.y, first.y, first.y);
     weights += rest * around;
-    vec3 sum = old.mean.a * old.mean.rgb + vec3(dot(weights, red * red), dot(weights, green * green), dot(weights, blue * blue));
+    vec3 sum = old.mean.a * old.mean.rgb + vec3(dot(weights, red * red),
+                                                dot(weights, green * green),
+                                                dot(weights, blue * blue));
     vec3 light = sum * (1.0 / max(count, 1.0));
     masu_show(ivec2(at), light, count, old, stays, masu_chance(at));
 }

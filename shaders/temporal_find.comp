@@ -83,11 +83,13 @@ struct colors {
 
 around depths_around(ivec2 at, ivec2 size)
 {
-    masu_corners c = masu_corners_of(depth_image, vec2(at), vec2(size), vec2(push.depth_x, push.depth_y));
+    masu_corners c = masu_corners_of(depth_image, vec2(at), vec2(size),
+                                     vec2(push.depth_x, push.depth_y));
     around found;
     found.nearest = masu_most_of(c);
     found.farthest = masu_least_of(c);
-    found.slope = min(abs(c.left - c.own), abs(c.right - c.own)) + min(abs(c.above - c.own), abs(c.below - c.own));
+    found.slope = min(abs(c.left - c.own), abs(c.right - c.own)) +
+                  min(abs(c.above - c.own), abs(c.below - c.own));
     found.way = masu_way_to(c, found.nearest);
     return found;
 }
@@ -99,7 +101,8 @@ vec4 motion_at(ivec2 at, vec2 place, around a, vec2 size, out bool of_front)
      * size of 1 every position reads them. */
     vec2 inside = min(max(place, vec2(0.5)), size - 0.51);
     vec4 moved = textureLod(velocity_image, inside * vec2(push.moved_x, push.moved_y), 0.0);
-    of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99) || any(lessThan(size, vec2(2.0)));
+    of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99) ||
+               any(lessThan(size, vec2(2.0)));
     if (of_front) {
         moved = texelFetch(velocity_image, at + masu_found_beside(a.way), 0);
     }
@@ -121,7 +124,8 @@ bool is_known(vec4 depths, around a, float growth)
     /* Stored depths are scaled by `now`, current ones by `then`. NaN compares as unknown. */
     float then = previous.forward.w, now = frame.forward.w * (1.0 + growth);
     float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
-    return masu_least_of(depths) * now <= a.nearest * then + off && masu_most_of(depths) * now >= a.farthest * then - off;
+    return masu_least_of(depths) * now <= a.nearest * then + off &&
+           masu_most_of(depths) * now >= a.farthest * then - off;
 }
 
 /* Whether a depth of the previous frame is in front of all samples of this frame. */
@@ -143,7 +147,12 @@ colors colors_around(ivec2 at, ivec2 last)
     ivec2 low = max(at - 1, 0), high = min(at + 1, last);
     for (int i = 0; i < 9; i++) {
         int x = i % 3, y = i / 3;
-        ivec2 beside = ivec2(x == 0 ? low.x : x == 1 ? at.x : high.x, y == 0 ? low.y : y == 1 ? at.y : high.y);
+        ivec2 beside = ivec2(x == 0   ? low.x
+                             : x == 1 ? at.x
+                                      : high.x,
+                             y == 0   ? low.y
+                             : y == 1 ? at.y
+                                      : high.y);
         vec3 root = texelFetch(color_image, beside, 0).rgb;
         c.mean += root;
         c.deviation += root * root;
@@ -161,7 +170,8 @@ colors colors_around(ivec2 at, ivec2 last)
  * difference that one standard deviation of the encoded samples makes. */
 bool is_other(vec2 before, colors c, out vec3 off)
 {
-    vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown * vec2(push.pixel_x, push.pixel_y);
+    vec2 shown = vec2(push.history_x, push.history_y),
+         half_texel = 0.5 * shown * vec2(push.pixel_x, push.pixel_y);
     vec2 inside = min(max(before * shown, half_texel), max(shown - 2.0 * half_texel, half_texel));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
@@ -184,8 +194,8 @@ uvec2 found_at(ivec2 at, vec2 size)
     float speed = length(moved.xy);
     bool rests = !(speed > at_rest);
     bool changes = frame.temporal.z >= MASU_TEMPORAL_CHANGES;
-    bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
-                 all(lessThanEqual(before, vec2(1.0)));
+    bool there = frame.temporal.x != 0u && moved.w > 0.0 &&
+                 all(greaterThanEqual(before, vec2(0.0))) && all(lessThanEqual(before, vec2(1.0)));
     /* If nothing has moved, the surface is unchanged even if this frame's samples miss it: a
      * wire. */
     if (there && rests && !changes) {

@@ -43,7 +43,8 @@ struct cell {
 };
 
 /* Resolves one of the four pixels. A function that is called four times, not a loop: the cost model
- * counts an unrolled loop as if each iteration ran the whole loop (docs/design/20-cost-model.md). */
+ * counts an unrolled loop as if each iteration ran the whole loop
+ * (docs/design/20-cost-model.md). */
 void resolve(cell c, ivec2 way)
 {
     ivec2 at = c.first + way;
@@ -57,10 +58,13 @@ void resolve(cell c, ivec2 way)
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
     vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * c.inside_y;
+    vec4 weights = x.xyxy * y.xxyy;
     float count = old.mean.a + (x.x + x.y) * (y.x + y.y);
-    float rest = max(1.0 - count, 0.0), below = f.y * rest, above = rest - below;
-    vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
-    vec4 weights = x.xyxy * y.xxyy + vec4(left.x, right.x, left.y, right.y);
+    if (count < 1.0) {
+        float rest = 1.0 - count, below = f.y * rest, above = rest - below;
+        vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
+        weights += vec4(left.x, right.x, left.y, right.y);
+    }
     vec3 sum = old.mean.a * old.mean.rgb;
     sum += weights.x * c.light[0];
     sum += weights.y * c.light[1];
@@ -90,7 +94,8 @@ void main()
     ivec2 after = c.before + 1;
     c.low = clamp(c.before, ivec2(0), last);
     c.high = clamp(after, ivec2(0), last);
-    c.light = vec3[4](light_at(c.low), light_at(ivec2(c.high.x, c.low.y)), light_at(ivec2(c.low.x, c.high.y)), light_at(c.high));
+    c.light = vec3[4](light_at(c.low), light_at(ivec2(c.high.x, c.low.y)),
+                      light_at(ivec2(c.low.x, c.high.y)), light_at(c.high));
     c.inside_x = vec2(equal(ivec2(c.low.x, c.high.x), ivec2(c.before.x, after.x)));
     c.inside_y = vec2(equal(ivec2(c.low.y, c.high.y), ivec2(c.before.y, after.y)));
     c.chance = masu_chance(uvec2(c.first));

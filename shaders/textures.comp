@@ -39,7 +39,8 @@ void main()
     uint count = min(texels[3], uint(MASU_TEXTURE_WRITES));
     region r = region_of(gl_WorkGroupID.z);
     uvec2 own = gl_GlobalInvocationID.xy, at = r.first + own;
-    bool last = all(lessThan(own, r.size)) && all(lessThan(at, uvec2(imageSize(textures_image).xy)));
+    bool last = all(lessThan(own, r.size)) &&
+                all(lessThan(at, uvec2(imageSize(textures_image).xy)));
     for (uint i = 1u; i < uint(MASU_TEXTURE_WRITES) && last; i++) {
         uint later = gl_WorkGroupID.z + i;
         if (later >= count) {
@@ -49,7 +50,8 @@ void main()
         last = over.layer != r.layer || any(greaterThanEqual(at - over.first, over.size));
     }
     if (last) {
-        MASU_STORE_LAYER(textures_image, at, int(r.layer), uvec4(texels[r.from + own.y * r.size.x + own.x]));
+        MASU_STORE_LAYER(textures_image, at, int(r.layer),
+                         uvec4(texels[r.from + own.y * r.size.x + own.x]));
     }
     masu_count_end();
 }

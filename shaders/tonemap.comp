@@ -109,7 +109,8 @@ vec3 display_light(ivec2 at)
 /* Encodes display-linear colour: by square roots, or for the display. */
 vec3 stored(vec3 y)
 {
-    return push.roots != 0u ? sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0)) : masu_encoded(y, push.white);
+    return push.roots != 0u ? sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0))
+                            : masu_encoded(y, push.white);
 }
 
 #ifdef MASU_TEN
@@ -131,7 +132,8 @@ void main()
         }
 #endif
 #if defined(MASU_TEN)
-        MASU_STORE_CHECKED(ldr_image, at, vec3, stored(y), uvec4(stored_bits(masu_sane_unit(masu_store_value), at)));
+        MASU_STORE_CHECKED(ldr_image, at, vec3, stored(y),
+                           uvec4(stored_bits(masu_sane_unit(masu_store_value), at)));
 #elif defined(MASU_DEEP)
         if (push.roots != 0u) {
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(stored(y)), 0.0));

@@ -134,7 +134,8 @@ vec4 background_level(uint level, vec2 pixel)
     vec2 size = vec2(tiles * (MASU_BACKGROUND_TILE >> level));
     vec2 at = clamp(pixel / float(1u << level), vec2(0.5), size - 0.5);
     vec2 whole = vec2(textureSize(background_image, 0));
-    return textureLod(background_image, (vec2(masu_background_at(level, largest, tiles)) + at) / whole, 0.0);
+    return textureLod(background_image,
+                      (vec2(masu_background_at(level, largest, tiles)) + at) / whole, 0.0);
 }
 
 vec4 background(vec2 pixel, float apart)
@@ -180,7 +181,8 @@ vec3 masu_behind(vec2 pixel, float alpha, out float radius)
 vec2 refracted(vec3 direction, vec3 n, vec2 volume)
 {
     vec2 size = vec2(pc.output_width, pc.output_height);
-    vec3 inside = refract(direction, n, -masu_rcp(volume.y)) * (volume.x * unpackHalf2x16(in_thing.w).y);
+    vec3 inside = refract(direction, n, -masu_rcp(volume.y)) *
+                  (volume.x * unpackHalf2x16(in_thing.w).y);
     vec4 offset = frame.clip_from_rel * vec4(inside, 0.0);
     float w = frame.forward.w * masu_rcp(gl_FragCoord.z);
     vec2 ndc = ((gl_FragCoord.xy / size * 2.0 - 1.0) * w + offset.xy) * masu_rcp(w + offset.w);
@@ -228,7 +230,8 @@ void main()
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
     vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n);
     n = masu_normalize(masu_seen_normal(away ? -bent : bent, in_rel, n), -direction);
-    if (masu_own_coats && s.coat > 0.0 && (in_thing.y & (MASU_MAP_COAT_SMOOTH | MASU_MAP_BASE_SMOOTH)) != 0u) {
+    if (masu_own_coats && s.coat > 0.0 &&
+        (in_thing.y & (MASU_MAP_COAT_SMOOTH | MASU_MAP_BASE_SMOOTH)) != 0u) {
         bool coat_is_even = (in_thing.y & MASU_MAP_COAT_SMOOTH) != 0u;
         vec3 below = coat_is_even ? n : even;
         n = coat_is_even ? even : n;
@@ -274,7 +277,8 @@ void main()
         masu_lit lit = masu_shade(s, b, around, seen, sky);
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
         surface = taken = 1.0 - through * (1.0 - mirrored);
-        bool rough = any_rough && (in_thing.y & MASU_MAP_TINTED) != 0u && s.roughness > MASU_SHARP_GLASS;
+        bool rough = any_rough && (in_thing.y & MASU_MAP_TINTED) != 0u &&
+                     s.roughness > MASU_SHARP_GLASS;
         refracts = refracts && !away;
         if (rough || refracts) {
             vec2 pixel = gl_FragCoord.xy;
@@ -285,7 +289,8 @@ void main()
                 shown = 1.0;
             }
             if (rough) {
-                float alpha = masu_sane(s.roughness * s.roughness, 0.0, 1.0) * (twice ? 1.41421356 : 1.0);
+                float alpha = masu_sane(s.roughness * s.roughness, 0.0, 1.0) *
+                              (twice ? 1.41421356 : 1.0);
                 float radius;
                 vec3 blurred = masu_behind(pixel, alpha, radius);
                 float share = smoothstep(1.0, 3.0, radius); /* finest level: may be half size */

@@ -49,10 +49,11 @@ void main()
     out_normal = masu_turned_normal(m);
     out_rel = rel;
     masu_pass_look(id);
-    out_thing = uvec4(drawn[push.instances + 1u], drawn[push.instances + 2u], drawn[push.instances + 3u],
-                      uint(gl_InstanceIndex));
+    out_thing = uvec4(drawn[push.instances + 1u], drawn[push.instances + 2u],
+                      drawn[push.instances + 3u], uint(gl_InstanceIndex));
     if ((tinted_glass & MASU_TINTS_REFRACTED) != 0u) { /* thickness scale: RMS of directions */
-        float squares = dot(m.row0.xyz, m.row0.xyz) + dot(m.row1.xyz, m.row1.xyz) + dot(m.row2.xyz, m.row2.xyz);
+        float squares = dot(m.row0.xyz, m.row0.xyz) + dot(m.row1.xyz, m.row1.xyz) +
+                        dot(m.row2.xyz, m.row2.xyz);
         out_thing.w |= packHalf2x16(vec2(0.0, masu_sqrt(squares / 3.0)));
     }
 #ifdef MASU_TEXTURES
@@ -60,7 +61,8 @@ void main()
 #ifdef MASU_ATTRIBUTES
     out_color = masu_vertex_color(color);
 #endif
-    out_detail = vec2(uintBitsToFloat(drawn[push.instances + 4u]), uintBitsToFloat(drawn[push.instances + 5u]));
+    out_detail = vec2(uintBitsToFloat(drawn[push.instances + 4u]),
+                      uintBitsToFloat(drawn[push.instances + 5u]));
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
     if (masu_depth_biases) {

@@ -36,8 +36,8 @@ static const char usage[] =
     "  -r N     always this rung instead\n"
     "  -f FILE  a script: keys, resizes, screenshots frame by frame\n"
     "  -v       under the Khronos validation layer\n"
-    "keys: arrows or WASD, Space handbrake; L lights, N dusk, R rain, B bloom, O autopilot, P pause,\n"
-    "      F12 photo, Escape\n";
+    "keys: arrows or WASD, Space handbrake; L lights, N dusk, R rain, B bloom, O autopilot,\n"
+    "      P pause, F12 photo, Escape\n";
 
 static void key(game *g, SDL_Scancode code, bool down) {
     g->keys[code] = down;

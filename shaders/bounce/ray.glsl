@@ -40,7 +40,8 @@ masu_bounce_ray masu_bounce_ray_at(uint i)
 {
     uint each = masu_bounce_each();
     uint word = masu_bounce_list[i / each];
-    return masu_bounce_ray(word & MASU_BOUNCE_PROBE, word >> MASU_BOUNCE_SET_SHIFT & (MASU_BOUNCE_SETS - 1u), i % each);
+    return masu_bounce_ray(word & MASU_BOUNCE_PROBE,
+                           word >> MASU_BOUNCE_SET_SHIFT & (MASU_BOUNCE_SETS - 1u), i % each);
 }
 
 /* pcg3d (Jarzynski and Olano, JCGT 9-3, 2020). */
@@ -65,7 +66,8 @@ float masu_bounce_unit(uint hash) { return float(hash >> 8) * (1.0 / 16777216.0)
 vec3 masu_bounce_direction(masu_bounce_ray r)
 {
     uvec3 h = masu_bounce_hash(uvec3(r.probe, 0u, 0x6D617375u));
-    float a = masu_bounce_unit(h.x), b = 6.28318531 * masu_bounce_unit(h.y), c = 6.28318531 * masu_bounce_unit(h.z);
+    float a = masu_bounce_unit(h.x), b = 6.28318531 * masu_bounce_unit(h.y),
+          c = 6.28318531 * masu_bounce_unit(h.z);
     vec4 q = vec4(masu_sqrt(1.0 - a) * vec2(sin(b), cos(b)), masu_sqrt(a) * vec2(sin(c), cos(c)));
     uint i = (r.set & 1u) * 2u + (r.set >> 2 & 1u), j = (r.set >> 1 & 1u) * 2u + (r.set >> 3 & 1u);
     float at = float(r.number) + 0.25 * float(i);

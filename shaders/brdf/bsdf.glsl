@@ -225,7 +225,8 @@ vec3 masu_sheen(masu_bsdf b, float sine2, float n_l)
 
 float masu_bared(masu_bsdf b, float cosine)
 {
-    return 1.0 - max(b.sheen.r, max(b.sheen.g, b.sheen.b)) * masu_sheen_albedo(b.sheen_alpha, cosine);
+    return 1.0 -
+           max(b.sheen.r, max(b.sheen.g, b.sheen.b)) * masu_sheen_albedo(b.sheen_alpha, cosine);
 }
 
 /* ---- Grain ---- */
@@ -239,7 +240,8 @@ float masu_ggx_grain(masu_bsdf b, vec3 h, vec3 l, float n_l)
     vec3 to_l = vec3(alpha * vec2(dot(l, b.grain), dot(l, across)), n_l);
     vec3 to_v = vec3(alpha * vec2(dot(b.v, b.grain), dot(b.v, across)), b.n_v);
     float n_h = clamp(dot(b.n, h), 0.0, 1.0), d = dot(at, at) + n_h * n_h;
-    return 0.5 / max(alpha.x * alpha.y * d * d * (n_l * length(to_v) + b.n_v * length(to_l)), 1e-12);
+    return 0.5 /
+           max(alpha.x * alpha.y * d * d * (n_l * length(to_v) + b.n_v * length(to_l)), 1e-12);
 }
 
 /* alpha along the grain. */
@@ -383,7 +385,8 @@ void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
     if (b.coat > 0.0) {
         float steep = masu_schlick(min(over, b.coat_n_v));
         specular *= max(1.0 - b.coat * (b.coat_line.x + b.coat_line.y * steep), 0.0);
-        float lobe = b.coat_gain * b.coat * (0.04 + 0.96 * s) * masu_ggx(b.coat_n, h, b.coat_alpha, over, b.coat_n_v);
+        float lobe = b.coat_gain * b.coat * (0.04 + 0.96 * s) *
+                     masu_ggx(b.coat_n, h, b.coat_alpha, over, b.coat_n_v);
         if (masu_own_coats) {
             top = lobe * over;
         } else {

@@ -48,7 +48,8 @@ void masu_meso_bend(masu_meso_curves m, vec3 view, float x, inout masu_meso_surf
     s.roughness = clamp(s.roughness * (1.0 + masu_meso_poly(m.rough.xyz, y)), m.tilt.w, 1.0);
     float closed = 1.0 - s.occlusion;
     closed = clamp(closed - closed * masu_meso_poly(m.open.xyz, y), 0.0, 1.0);
-    float sun = max(1.0 + masu_meso_poly(m.gain.xyz, y), 0.05) / clamp(1.0 + spread * lost, 0.25, 4.0);
+    float sun = max(1.0 + masu_meso_poly(m.gain.xyz, y), 0.05) /
+                clamp(1.0 + spread * lost, 0.25, 4.0);
     s.color *= sun + (sun * y * y) * m.tint.rgb;
     s.occlusion = min((1.0 - closed) / sun, 1.0);
     s.specular = clamp(m.specular.x + y * (m.specular.y + y * m.specular.z), 0.0, 1.0);

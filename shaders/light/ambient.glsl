@@ -59,9 +59,10 @@ vec3 masu_ambient(vec3 n)
 vec2 masu_lobe_bands(float roughness)
 {
     float r = roughness;
-    vec2 lost = r * r * (vec2(-0.0815037, 0.0255910) +
-                         r * (vec2(2.8173808, 6.6842436) +
-                              r * (vec2(-4.0033292, -10.3014656) + r * vec2(1.6007921, 4.3416570))));
+    vec2 lost = r * r *
+                (vec2(-0.0815037, 0.0255910) +
+                 r * (vec2(2.8173808, 6.6842436) +
+                      r * (vec2(-4.0033292, -10.3014656) + r * vec2(1.6007921, 4.3416570))));
     return clamp(1.0 - lost, vec2(0.0), vec2(1.0));
 }
 

@@ -3,7 +3,8 @@
  * up to a start distance. The optical depth along a straight ray has a closed form (Lengyel,
  * "Unified Distance Formulas for Halfspace Fog", JGT 12-2, 2007, for linear density):
  *
- *   depth = density(lower end) * length * mean(falloff * |climb| * length),  mean(x) = (1 - e^-x) / x
+ *   depth = density(lower end) * length * mean(falloff * |climb| * length),  mean(x) = (1 - e^-x) /
+ *                                                                            x
  *
  * Evaluated from the lower end upwards in either direction: from the camera, a descending ray would
  * be a small number times one that overflows. mean(x) is a series where 1 - e^-x cancels, so the
@@ -37,7 +38,8 @@ float masu_fog_density_at(float density, float falloff, float height)
 
 /* height: of the camera above the fog height; climb: y of the ray's unit direction; start: where
  * fog begins; far: end of the ray, both in metres along it. */
-float masu_fog_depth(float density, float falloff, float height, float climb, float start, float far)
+float masu_fog_depth(float density, float falloff, float height, float climb, float start,
+                     float far)
 {
     float begin = masu_sane(start, 0.0, masu_fog_far);
     float end = masu_sane(far, 0.0, masu_fog_far);

@@ -83,7 +83,9 @@ masu_asked masu_lights_asked(uvec2 tile, uvec2 size, bool by_tiles)
 /* Index of the i-th light. */
 uint masu_light_asked(masu_asked asked, uint i)
 {
-    return asked.list == MASU_TILE_ALL ? i : min(masu_light_tiles[asked.list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
+    return asked.list == MASU_TILE_ALL
+               ? i
+               : min(masu_light_tiles[asked.list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
 }
 #endif
 
@@ -130,7 +132,8 @@ bool masu_light_arrives(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
         strength = window;
     }
-    return strength > 0.0 && masu_finite((abs(light.color.r) + abs(light.color.g) + abs(light.color.b)) * strength);
+    return strength > 0.0 &&
+           masu_finite((abs(light.color.r) + abs(light.color.g) + abs(light.color.b)) * strength);
 }
 
 /* masu_light_arrives(), times the colour. */
@@ -208,7 +211,8 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
 float masu_light_height(masu_punctual_light_data light, vec3 to, vec3 n)
 {
     uint kind = masu_area_lights ? masu_light_kind(light) : MASU_KIND_POINT;
-    float height = dot(n, to) + (kind == MASU_KIND_RECTANGLE ? abs(dot(n, light.cone.xyz)) : masu_sqrt(light.color.w));
+    float height = dot(n, to) + (kind == MASU_KIND_RECTANGLE ? abs(dot(n, light.cone.xyz))
+                                                             : masu_sqrt(light.color.w));
     return kind == MASU_KIND_POINT ? height : height + abs(dot(n, light.axis.xyz));
 }
 
@@ -236,10 +240,11 @@ void masu_sum_mirrored(inout masu_light_sum sum, vec3 mirrored)
  *
  * Shadows come first: they keep only one value alive, and a point in shadow skips the rest. */
 #ifdef MASU_SHELVED
-bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b, masu_shelved_bsdf shelf, uint number,
-                          vec3 rel, vec3 n, vec3 traced)
+bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
+                          masu_shelved_bsdf shelf, uint number, vec3 rel, vec3 n, vec3 traced)
 #else
-bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
+bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b, uint number,
+                          vec3 rel, vec3 n, vec3 traced)
 #endif
 {
     masu_punctual_light_data light = masu_lights[number];
@@ -266,7 +271,8 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     /* Recomputed, in another form so that the compiler does not merge them: kept alive, they would
      * take six registers during the atlas reads. */
     if (masu_few_registers) {
-        light = masu_lights[min(number, masu_light_count() - 1u)]; /* the same, for compilers another */
+        /* the same, for compilers another */
+        light = masu_lights[min(number, masu_light_count() - 1u)];
     }
     to = -(rel - light.position.xyz);
     l = to * masu_rsqrt(dot(to, to));
@@ -306,7 +312,8 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     vec3 color = light.color.rgb * strength;
     bool directed = true;
     if (area) {
-        vec3 mirrored = color * masu_sane(masu_bsdf_specular(b) * (form.y * kept.x), 0.0, masu_huge);
+        vec3 mirrored = color *
+                        masu_sane(masu_bsdf_specular(b) * (form.y * kept.x), 0.0, masu_huge);
 #ifdef MASU_SURFACE
         mirrored *= s.shadow >= 0.0 ? masu_meso_shadow(s.shadow, b.v, l) : 1.0;
 #endif

@@ -82,8 +82,10 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
         vec4 right = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
         gap = max(max(gap, max(left.x, left.y)), max(max(left.z, left.w), max(right.y, right.z)));
         vec3 columns = vec3(across - slope.x, across, across + slope.x);
-        float low = dot(weight, masu_local_lit(columns, down, depth, vec3(left.w, left.z, right.z)));
-        float high = dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(left.x, left.y, right.y)));
+        float low = dot(weight,
+                        masu_local_lit(columns, down, depth, vec3(left.w, left.z, right.z)));
+        float high = dot(
+            weight, masu_local_lit(columns, down + slope.y, depth, vec3(left.x, left.y, right.y)));
         sum += rows.x * low + rows.y * high;
         rows.xy = vec2(0.0, rows.z);
         down += slope.y;
@@ -137,22 +139,29 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     float edge = float(1u << (word & 15u));
     vec2 corner = vec2(word >> MASU_LOCAL_X_SHIFT, word >> MASU_LOCAL_Y_SHIFT & 0xFFFu) * 8.0;
     float inverse = 1.0 / z;
-    float width = 2.0 * tangent / (edge - 2.0 * float(MASU_LOCAL_GUARD)); /* of a texel at distance 1 */
+    /* of a texel at distance 1 */
+    float width = 2.0 * tangent / (edge - 2.0 * float(MASU_LOCAL_GUARD));
     vec2 at = uv * (inverse / width) + (corner + 0.5 * edge);
     float depth = near * inverse;
     float step = depth * width;
     float along = dot(n, p) * inverse;
     float facing = min(along, -1.0 / masu_local_steepest);
     vec2 slope = across * (step / facing);
-    float lift = uintBitsToFloat(masu_lights_header.w) * masu_sqrt(dot(rel, rel)) * (inverse / width); /* texels */
+    /* texels */
+    float lift = uintBitsToFloat(masu_lights_header.w) * masu_sqrt(dot(rel, rel)) *
+                 (inverse / width);
     float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y));
     bias -= lift * (step / facing);
-    /* Terms that do not depend on the filter's result are computed first, so that fewer registers are live in it. */
-    float radius = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT ? near : masu_sqrt(light.color.w);
+    /* Terms that do not depend on the filter's result are computed first, so that fewer registers
+     * are live in it. */
+    float radius = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT
+                       ? near
+                       : masu_sqrt(light.color.w);
     float narrow = masu_local_width * near * width / max(radius, 1e-6);
     float facing_share = clamp(1.0 - (along - depth) * masu_local_behind, 0.0, 1.0);
     float gap;
-    float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z), gap);
+    float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z),
+                                  gap);
     /* Half the penumbra, in texels: radius * gap / (near * width). */
     float steeper = clamp(narrow / max(gap, 1e-9), 1.0, masu_local_steeper);
     lit = clamp((lit - 0.5) * steeper + 0.5, 0.0, 1.0) * facing_share;

@@ -59,7 +59,10 @@ uint masu_probe_lit()
 
 /* Live probes: offset of their rays' means, and of the sets with those. */
 uint masu_probe_live() { return masu_probe_lit() + masu_probe_count() * MASU_PROBE_LIT_WORDS; }
-uint masu_probe_live_sets() { return masu_probe_live() + masu_probe_count() * MASU_PROBE_LIT_WORDS; }
+uint masu_probe_live_sets()
+{
+    return masu_probe_live() + masu_probe_count() * MASU_PROBE_LIT_WORDS;
+}
 
 /* Position of a probe relative to the first. */
 vec3 masu_probe_place(uint probe)
@@ -191,7 +194,8 @@ vec4 masu_probe_light(vec3 from, vec3 normal)
         float w = t.x * t.y * t.z * (front * front + 0.05);
         uint probe = first + high.x * step.x + high.y * step.y + high.z * step.z;
         if (map_words > 0u && square > 1e-12) {
-            w *= max(masu_probe_seen(maps + probe * map_words, more.z, -d, distance * per_diagonal), 1e-4);
+            w *= max(masu_probe_seen(maps + probe * map_words, more.z, -d, distance * per_diagonal),
+                     1e-4);
         }
         float valid;
         vec3 e = masu_probe_irradiance(lit + probe * (MASU_PROBE_LIT_WORDS / 4u), by_normal, valid);

@@ -15,6 +15,7 @@
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 #include "brdf/bsdf.glsl"
+#include "brdf/shelf.glsl"
 #ifdef MASU_SURFACE
 #include "brdf/meso.glsl"
 #endif
@@ -26,7 +27,8 @@
 #endif
 
 /* On Mali and the Raspberry Pi lights are loaded again instead of kept: 64 registers for
- * each thread, and on Mali twice the threads at 32. Elsewhere that would only be more instructions. */
+ * each thread, and on Mali twice the threads at 32. Elsewhere that would only be more
+ * instructions. */
 layout(constant_id = 26) const bool masu_few_registers = false;
 
 /* Light that leaves a surface: diffuse and specular. */
@@ -167,16 +169,6 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 }
 
 #ifdef MASU_LIGHTS
-uvec2 masu_pack_halves(vec4 v)
-{
-    return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
-}
-
-vec4 masu_unpack_halves(uvec2 v)
-{
-    return vec4(unpackHalf2x16(v.x), unpackHalf2x16(v.y));
-}
-
 #ifdef MASU_PROBES
 /* A surface as half floats, while a lookup of probes needs its registers. */
 struct masu_shelved_look {
@@ -230,56 +222,12 @@ masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
     return masu_ambient_at(rel, n);
 #endif
 }
-
-#ifdef MASU_SHELVED
-/* The colours and related values of a bsdf that only the end of a light's evaluation needs. */
-struct masu_shelved_bsdf {
-    uvec2 f0, rest, diffuse, matte;
-#ifdef MASU_SURFACE
-    uint coat_line;
-#endif
-};
-
-masu_shelved_bsdf masu_shelve(masu_bsdf b)
-{
-    masu_shelved_bsdf p;
-    p.f0 = masu_pack_halves(vec4(b.f0, b.f90));
-    p.rest = masu_pack_halves(vec4(b.rest, b.seen.white));
-    p.diffuse = masu_pack_halves(vec4(b.diffuse, b.seen.weight));
-    p.matte = masu_pack_halves(vec4(b.matte_f0, b.matte_slope, b.matte_rest, 0.0));
-#ifdef MASU_SURFACE
-    p.matte.y = packHalf2x16(vec2(b.matte_rest, b.coat));
-    p.coat_line = packHalf2x16(b.coat_line);
-#endif
-    return p;
-}
-
-void masu_unshelve(masu_shelved_bsdf p, inout masu_bsdf b)
-{
-    vec4 v = masu_unpack_halves(p.f0);
-    b.f0 = v.xyz;
-    b.f90 = v.w;
-    v = masu_unpack_halves(p.rest);
-    b.rest = v.xyz;
-    b.seen.white = v.w;
-    v = masu_unpack_halves(p.diffuse);
-    b.diffuse = v.xyz;
-    b.seen.weight = v.w;
-    v = masu_unpack_halves(p.matte);
-    b.matte_f0 = v.x;
-    b.matte_slope = v.y;
-    b.matte_rest = v.z;
-#ifdef MASU_SURFACE
-    b.coat = v.w;
-    b.coat_line = unpackHalf2x16(p.coat_line);
-#endif
-}
-#endif
 #endif
 
-/* Only the ambient light. b: of s; around: computed before b (masu_ambient_at needs many registers);
- * seen: visibility of the ambient light; sky: from masu_mirrored_sky. */
-masu_lit masu_shade_around(masu_surface s, masu_bsdf b, masu_around around, float seen, masu_mirrored sky)
+/* Only the ambient light. b: of s; around: computed before b (masu_ambient_at needs many
+ * registers); seen: visibility of the ambient light; sky: from masu_mirrored_sky. */
+masu_lit masu_shade_around(masu_surface s, masu_bsdf b, masu_around around, float seen,
+                           masu_mirrored sky)
 {
     vec3 ambient = around.mirrored * (seen * s.occlusion);
     masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen * s.occlusion),

@@ -69,7 +69,8 @@ float masu_haze_phase(float cosine, float g)
 /* Phase functions of the three terms at a cosine to the sun. */
 vec3 masu_sky_phases(float cosine)
 {
-    return vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
+    return vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine),
+                masu_haze_phase(cosine, masu_sky_tables.sun.w));
 }
 
 /* Cosine of the azimuth between a direction and the sun; 0 straight up and down. */
@@ -122,7 +123,8 @@ vec3 masu_sky_blurred(vec3 direction, float a1, float a2)
     float width = masu_sqrt((1.0 - a2) * (1.0 - 0.9 * d.y * d.y)) * 0.45;
     vec3 sum = vec3(0.0);
     [[dont_unroll]] for (int i = -1; i <= 1; i++) {
-        sum += masu_sky_sum(clamp(d.y + float(i) * width, -1.0, 1.0), x, vec3(1.0, air_phase, haze_phase));
+        sum += masu_sky_sum(clamp(d.y + float(i) * width, -1.0, 1.0), x,
+                            vec3(1.0, air_phase, haze_phase));
     }
     return sum * (1.0 / 3.0);
 }

@@ -1,17 +1,18 @@
 /*
- * source.glsl: light sources that have a size: the sphere of a point or a spot, a rectangle, a capsule.
+ * source.glsl: light sources that have a size: the sphere of a point or a spot, a rectangle, a
+ * capsule.
  *
- *   sphere     diffuse: irradiance of its part above the horizon. Specular: the lobe of a point at its
- *              centre, widened by the source (Karis, "Real Shading in Unreal Engine 4", 2013, with the
- *              distance of half vectors instead of the mirror direction), times a factor that restores
- *              the energy. Roughness 0.045 to 1, sin of the source's radius 0.02 to 0.95, any height:
- *              within 15 % of the exact energy for views of 20 degrees above the surface and more, within
- *              22 % at 10 (tests/gpu/test_area_lights.c)
+ *   sphere     diffuse: irradiance of its part above the horizon. Specular: the lobe of a point at
+ *              its centre, widened by the source (Karis, "Real Shading in Unreal Engine 4", 2013,
+ *              with the distance of half vectors instead of the mirror direction), times a factor
+ *              that restores the energy. Roughness 0.045 to 1, sin of the source's radius 0.02 to
+ *              0.95, any height: within 15 % of the exact energy for views of 20 degrees above the
+ *              surface and more, within 22 % at 10 (tests/gpu/test_area_lights.c)
  *   rectangle  linearly transformed cosines (Heitz et al., "Real-Time Polygonal-Light Shading with
- *              Linearly Transformed Cosines", SIGGRAPH 2016). The horizon does not clip the polygon: its
- *              vector form factor is treated like a sphere's (Hill, "Real-Time Area Lighting: a
- *              Journey from Research to Production", 2016). The table is normalised: the amplitude is the
- *              albedo of tables.glsl
+ *              Linearly Transformed Cosines", SIGGRAPH 2016). The horizon does not clip the
+ *              polygon: its vector form factor is treated like a sphere's (Hill, "Real-Time Area
+ *              Lighting: a Journey from Research to Production", 2016). The table is normalised:
+ *              the amplitude is the albedo of tables.glsl
  *   capsule    a rectangle that faces the point, longer by pi r / 4 at either end
  *
  * s2: squared sine of the angle that the radius of a sphere subtends, 0..1.
@@ -35,7 +36,8 @@ float masu_clipped_cosine(float c, float s2)
     float x = sqrt(1.0 - s2);
     float q = clamp(0.5 + 0.5 * c * masu_rcp(s), 0.0, 1.0);
     float whole = 1.0 - 0.8 * x;
-    return s * (whole * masu_pow_above(max(q, 1e-6), 1.0 + x) + (1.0 - whole) * q * q * (0.698 + 0.302 * q));
+    return s * (whole * masu_pow_above(max(q, 1e-6), 1.0 + x) +
+                (1.0 - whole) * q * q * (0.698 + 0.302 * q));
 }
 
 float masu_widened(float alpha, float wider)
@@ -115,7 +117,8 @@ void masu_spread(inout masu_bsdf b, inout vec3 l, inout vec3 color, float s2, ve
 vec3 masu_edge(vec3 a, vec3 b)
 {
     float x = dot(a, b), y = abs(x);
-    float v = (0.2499999 + y * (0.1441643 + 0.0041431 * y)) / (1.0 + y * (1.2132374 + 0.2893999 * y));
+    float v = (0.2499999 + y * (0.1441643 + 0.0041431 * y)) /
+              (1.0 + y * (1.2132374 + 0.2893999 * y));
     vec3 normal = cross(a, b);
     /* For nearly opposite vectors 1 - x^2 has no digits left. */
     return normal * (x >= 0.0 ? v : 0.5 * masu_rsqrt_sure(max(dot(normal, normal), 1e-20)) - v);
@@ -131,7 +134,8 @@ vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
     float half_squared = dot(u, u) + dot(v, v);
     if (half_squared < 0.16 * squared && squared > 1e-12 && squared < 1e18) {
         vec3 a = (u + v) * 0.57735027, b = (u - v) * 0.57735027;
-        vec2 middle = squared + vec2(dot(a, a), dot(b, b)), aside = 2.0 * vec2(dot(center, a), dot(center, b));
+        vec2 middle = squared + vec2(dot(a, a), dot(b, b)),
+             aside = 2.0 * vec2(dot(center, a), dot(center, b));
         vec2 high = 1.0 / (middle + aside), low = 1.0 / (middle - aside);
         high *= high;
         low *= low;
@@ -141,7 +145,8 @@ vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
     }
     vec3 sum = vec3(0.0), from = masu_unit(center - u - v);
     [[dont_unroll]] for (int i = 0; i < 4; i++) {
-        vec3 to = masu_unit(center + (i == 1 || i == 2 ? 1.0 : -1.0) * u + (i < 2 ? 1.0 : -1.0) * v);
+        vec3 to =
+            masu_unit(center + (i == 1 || i == 2 ? 1.0 : -1.0) * u + (i < 2 ? 1.0 : -1.0) * v);
         sum += masu_edge(from, to);
         from = to;
     }
@@ -164,7 +169,8 @@ float masu_above(vec3 form, float height, out float cosine)
 vec4 masu_transform_at(uint node, float f)
 {
     uint at = uint(MASU_TABLE_TRANSFORM) + 2u * node;
-    ivec4 words = ivec4(masu_tables[at], masu_tables[at + 1u], masu_tables[at + 2u], masu_tables[at + 3u]);
+    ivec4 words = ivec4(masu_tables[at], masu_tables[at + 1u], masu_tables[at + 2u],
+                        masu_tables[at + 3u]);
     vec4 m;
     m.x = mix(float(words.x << 16 >> 16), float(words.z << 16 >> 16), f);
     m.y = mix(float(words.x >> 16), float(words.z >> 16), f);
@@ -177,7 +183,8 @@ vec4 masu_transform_at(uint node, float f)
 vec4 masu_transform(float alpha, float n_v)
 {
     const float rows = float(MASU_TRANSFORM_ROWS - 1), columns = float(MASU_TRANSFORM_COLUMNS - 1);
-    float y = clamp((sqrt(alpha) - MASU_TABLE_SMOOTHEST) * (rows / (1.0 - MASU_TABLE_SMOOTHEST)), 0.0, rows);
+    float y = clamp((sqrt(alpha) - MASU_TABLE_SMOOTHEST) * (rows / (1.0 - MASU_TABLE_SMOOTHEST)),
+                    0.0, rows);
     float x = sqrt(1.0 - n_v) * columns;
     uint row = min(uint(y), uint(MASU_TRANSFORM_ROWS - 2));
     uint column = min(uint(x), uint(MASU_TRANSFORM_COLUMNS - 2));

@@ -1,7 +1,7 @@
 /*
- * bloom.glsl: the sizes of the lit image for bloom. 1/4 has its own image; 1/8 and 1/16, and 1/32, 1/64 and 1/128, are
- * one below the other. A texel of 1/n covers n x n render pixels exactly; those of the last row and column may extend
- * beyond the image.
+ * bloom.glsl: the sizes of the lit image for bloom. 1/4 has its own image; 1/8 and 1/16, and 1/32,
+ * 1/64 and 1/128, are one below the other. A texel of 1/n covers n x n render pixels exactly; those
+ * of the last row and column may extend beyond the image.
  */
 #ifndef MASU_BLOOM_GLSL
 #define MASU_BLOOM_GLSL

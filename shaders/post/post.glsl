@@ -1,5 +1,6 @@
 /*
- * post.glsl: the buffer of the effects on the image (shared/post.h), and the filters that they share.
+ * post.glsl: the buffer of the effects on the image (shared/post.h), and the filters that they
+ * share.
  */
 #ifndef MASU_POST_GLSL
 #define MASU_POST_GLSL
@@ -18,7 +19,8 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_POST, std430) readonly buffer 
 vec3 masu_post_sample(sampler2D image, vec2 at, vec2 size, float row)
 {
     vec2 inside = clamp(at, vec2(0.5), max(size - 0.5, 0.5)) + vec2(0.0, row);
-    return masu_sane(textureLod(image, inside / vec2(textureSize(image, 0)), 0.0).rgb, 0.0, 65504.0);
+    return masu_sane(textureLod(image, inside / vec2(textureSize(image, 0)), 0.0).rgb, 0.0,
+                     65504.0);
 }
 
 /* The same by the uniform cubic B-spline, as four bilinear samples: smooth at any magnification,

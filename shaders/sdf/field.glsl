@@ -116,7 +116,8 @@ shared uint masu_own_parts[MASU_OWN_PARTS];
 uint masu_part_at(uint i)
 {
     uint at = masu_list_first + i;
-    return masu_list_count == MASU_TILE_ALL ? i : masu_own_parts[at >> 1] >> 16u * (at & 1u) & 0xFFFFu;
+    return masu_list_count == MASU_TILE_ALL ? i
+                                            : masu_own_parts[at >> 1] >> 16u * (at & 1u) & 0xFFFFu;
 }
 
 void masu_own_part_write(uint at, uint part)
@@ -134,7 +135,9 @@ uint masu_part_at(uint i)
 /* The number is an index into slots: clamped to the last part, whatever memory holds. */
 uint masu_part_at(uint i)
 {
-    return masu_list_count == MASU_TILE_ALL ? i : min(masu_tiles[masu_list_first + i], masu_last_part());
+    return masu_list_count == MASU_TILE_ALL
+               ? i
+               : min(masu_tiles[masu_list_first + i], masu_last_part());
 }
 #endif
 

@@ -8,7 +8,7 @@
 #define MASU_SDF_SLOT_COUNT 1
 #ifdef MASU_SDF_TERMS
 #if !MASU_SDF_TERMS_FOUND
-#error MASU_SDF_TERMS must be defined in the scene's own file, by a line that begins with "#define MASU_SDF_TERMS"
+#error MASU_SDF_TERMS must be defined in the scene's file by a line "#define MASU_SDF_TERMS ..."
 #endif
 #define MASU_SDF_BLOCK_WORDS 1
 #define MASU_SDF_TERM_BITS_0 0xFFFFFFFEu

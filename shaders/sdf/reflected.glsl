@@ -57,7 +57,8 @@ struct reflected {
 
 /* `from`: the lifted start relative to the camera, where the cone is `width` wide, growing by
  * `spread`. */
-reflected reflected_ray(vec3 from, vec3 direction, float width, float spread, float lift, float longest)
+reflected reflected_ray(vec3 from, vec3 direction, float width, float spread, float lift,
+                        float longest)
 {
     reflected m;
     m.apex = clamp(width / max(spread, 1e-6), 0.0, 1e9);
@@ -67,7 +68,9 @@ reflected reflected_ray(vec3 from, vec3 direction, float width, float spread, fl
     coarse = 8.0 * ulp * (max(a.x, max(a.y, a.z)) + max(b.x, max(b.y, b.z)));
     m.along = ray(direction, max(spread, 1e-6), m.apex, m.apex + longest);
     clip_to_box(m.along, frame.sdf_min.xyz, frame.sdf_max.xyz);
-    float end = masu_sdf_flat(world_at(direction, m.apex), direction, m.along.start - m.apex, m.part) + m.apex;
+    float end = masu_sdf_flat(world_at(direction, m.apex), direction, m.along.start - m.apex,
+                              m.part) +
+                m.apex;
     bool ends = end < m.along.limit;
     m.end = ends ? end : -1.0;
     vec3 low, high;

@@ -32,7 +32,8 @@ float span_margin(ray r, float begin, float end)
     vec3 p = abs(world_at(r.direction, end));
     float slack = 128.0 * ulp * (max(p.x, max(p.y, p.z)) + end); /* includes the samples around a
                                                                   * hit, for its normal */
-    return field_margin(r, 0.5 * (begin + end), 1.01 * length(vec2(0.5 * (end - begin), across)) + slack);
+    return field_margin(r, 0.5 * (begin + end),
+                        1.01 * length(vec2(0.5 * (end - begin), across)) + slack);
 }
 
 /* Offset of a block's data, which follow the tile lists: the start of the first piece as a float,
@@ -42,7 +43,8 @@ uint span_place(uvec2 block, uvec2 size)
     uvec2 grid = masu_tile_grid(size);
     uint first = uint(MASU_TILES_HEADER) + grid.x * grid.y * (1u + masu_list_stride());
     uint columns = (size.x + 3u) / 4u;
-    return first + (block.y * columns + block.x) * uint(1 + MASU_BLOCK_SPANS * MASU_SDF_BLOCK_WORDS);
+    return first +
+           (block.y * columns + block.x) * uint(1 + MASU_BLOCK_SPANS * MASU_SDF_BLOCK_WORDS);
 }
 
 #if MASU_BLOCK_PIXELS != 4
@@ -55,7 +57,7 @@ uint span_word(uvec2 at, uvec2 size)
 
 #endif
 
-/* ---- Following a pixel's ray ------------------------------------------------------------------- */
+/* ---- Following a pixel's ray ----------------------------------------------------------------- */
 
 /* MASU_SPAN_TILE: index of the tile. MASU_SPAN_BEFORE: whether the ray may begin before the
  * pieces. */
@@ -89,7 +91,9 @@ void span_look_up(float t, uvec2 size)
     uvec4 past = uvec4(greaterThan(vec4(t), ends));
     uint now = past.x + past.y + past.z + past.w;
     bool before = MASU_SPAN_BEFORE && t < start;
-    span_from = before || !MASU_SPAN_BEFORE && now == 0u ? 0.0 : now == 0u ? start : span_end(ends, now - 1u);
+    span_from = before || !MASU_SPAN_BEFORE && now == 0u ? 0.0
+                : now == 0u                              ? start
+                                                         : span_end(ends, now - 1u);
     span_to = before ? start : now == 4u ? 1e30 : span_end(ends, now);
     if (before || now == 4u) {
         masu_use_tile(MASU_SPAN_TILE, size);
@@ -104,7 +108,8 @@ void span_look_up(float t, uvec2 size)
     }
 }
 
-/* For code that calls span_begin() only on some paths: values of an earlier ray would take registers. */
+/* For code that calls span_begin() only on some paths: values of an earlier ray would take
+ * registers. */
 void span_begin_none()
 {
     span_first = 0u;

@@ -67,10 +67,14 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEEP_ESTIMATE(d, part, safe) MASU_IF_KEEPING(masu_keep_estimate(d, part, safe, p))
 #define MASU_KEEP_TERMS(word, first) MASU_IF_KEEPING(masu_kept[word] |= masu_kept_terms << (first))
 #define MASU_KEEP(bit) MASU_IF_KEEPING(kept |= bit)
-#define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before) \
-    MASU_IF_KEEPING(kept = masu_keep_least(kept, joined, e, masu_margin * (lipschitz) + max(blend, 0.0), bit, before))
-#define MASU_KEEP_MOST(joined, e, lipschitz, blend, bit, before) \
-    MASU_IF_KEEPING(kept = masu_keep_least(kept, -(joined), -(e), masu_margin * (lipschitz) + max(blend, 0.0), bit, before))
+#define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before)                                  \
+    MASU_IF_KEEPING(kept = masu_keep_least(kept, joined, e,                                        \
+                                           masu_margin * (lipschitz) + max(blend, 0.0), bit,       \
+                                           before))
+#define MASU_KEEP_MOST(joined, e, lipschitz, blend, bit, before)                                   \
+    MASU_IF_KEEPING(kept = masu_keep_least(kept, -(joined), -(e),                                  \
+                                           masu_margin * (lipschitz) + max(blend, 0.0), bit,       \
+                                           before))
 #define MASU_KEEP_ALL(all, bits) MASU_IF_KEEPING(kept |= (all) ? bits : 0u)
 #define MASU_KEPT MASU_IF_KEEPING(masu_kept_terms |= kept)
 
@@ -109,7 +113,9 @@ void masu_terms_end()
 
 void masu_term_joined(int term, uint before, float joined, float e, float blend)
 {
-    if (masu_keeping) masu_terms_kept = masu_keep_least(masu_terms_kept, joined, e, masu_margin + max(blend, 0.0), 1u << term, before);
+    if (masu_keeping)
+        masu_terms_kept = masu_keep_least(masu_terms_kept, joined, e, masu_margin + max(blend, 0.0),
+                                          1u << term, before);
 }
 #else
 void masu_terms_begin()

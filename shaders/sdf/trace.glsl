@@ -37,7 +37,8 @@ ray place_ray(vec2 place, uvec2 size, float raster, out float z_scale)
     vec3 through = masu_place_ray(place, size);
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
-    ray r = ray(through * inverse, 2.0 * frame.up.w / float(size.y) * inverse, near * z_scale, frame.sdf_max.w);
+    ray r = ray(through * inverse, 2.0 * frame.up.w / float(size.y) * inverse, near * z_scale,
+                frame.sdf_max.w);
     if (raster > 0.0) {
         r.limit = min(r.limit, near / raster * z_scale); /* equal depth: the raster surface wins */
     }

@@ -1,7 +1,7 @@
 /*
- * dither.glsl: 32 bits for each pixel and frame, evenly spread, to round by: R2 over the pixels (M. Roberts, "The
- * Unreasonable Effectiveness of Quasirandom Sequences", 2018), plus the golden ratio for each frame; of integers,
- * so that all drivers have one pattern. After globals.glsl.
+ * dither.glsl: 32 bits for each pixel and frame, evenly spread, to round by: R2 over the pixels (M.
+ * Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), plus the golden ratio
+ * for each frame; of integers, so that all drivers have one pattern. After globals.glsl.
  */
 #ifndef MASU_DITHER_GLSL
 #define MASU_DITHER_GLSL

@@ -22,7 +22,8 @@ vec3 masu_encoded(vec3 y, float white)
 vec3 masu_encoded_open(vec3 y, float peak, float white)
 {
     if (masu_encoding == MASU_OUTPUT_SRGB) {
-        return vec3(masu_srgb_encode_open(y.r), masu_srgb_encode_open(y.g), masu_srgb_encode_open(y.b));
+        return vec3(masu_srgb_encode_open(y.r), masu_srgb_encode_open(y.g),
+                    masu_srgb_encode_open(y.b));
     }
     return masu_encoded(y * peak, white);
 }

@@ -67,8 +67,8 @@ struct masu_frame_uniforms {
     masu_vec4 columns[2];
     masu_vec4 rows[2];
     /* With desc.live_environment: */
-    masu_vec4 environment[3]; /* xyz rows of the rotation world -> environment map; w factors on red,
-                                 green and blue of the map */
+    masu_vec4 environment[3]; /* xyz rows of the rotation world -> environment map; w factors on
+                                 red, green and blue of the map */
     masu_vec4 background;     /* rgb radiance added to the visible sky; w factor on that sky */
 };
 

@@ -15,8 +15,8 @@ struct masu_punctual_light_data {
     masu_vec4 color;    /* point, spot: rgb radiant intensity / pi. Capsule, rectangle: radiance.
                            w squared radius; rectangle: 1 two sides, 0 only the front, u x v */
     masu_vec4 axis;     /* xyz unit direction of a spot, w 1 - cos(outer); point 0 0 0 4.
-                           Capsule, rectangle: half axis u, metres; w of a rectangle half the thickness
-                           of its surface */
+                           Capsule, rectangle: half axis u, metres; w of a rectangle half the
+                           thickness of its surface */
     masu_vec4 cone;     /* spot: x 1 / (cos(inner) - cos(outer)); y sine and z cosine of the outer
                            angle; point 1 0 0. Rectangle: half axis v. Capsule: 0 0 0.
                            w bits: kind, 0 point or spot, 1 capsule, 2 rectangle; LIGHT_SHARED */

@@ -1,7 +1,8 @@
 /*
- * live_textures.glsl: samples of textures that the host writes at run time (desc.reserve.textures), which have no mips.
- * A pixel takes the mean of up to 4 x 4 bilinear samples, one per texel along its x and y axis: without aliasing up to
- * four texels per pixel, in any direction. Cells of an atlas do not bleed, since each sample stays half a texel within.
+ * live_textures.glsl: samples of textures that the host writes at run time (desc.reserve.textures),
+ * which have no mips. A pixel takes the mean of up to 4 x 4 bilinear samples, one per texel along
+ * its x and y axis: without aliasing up to four texels per pixel, in any direction. Cells of an
+ * atlas do not bleed, since each sample stays half a texel within.
  */
 #ifndef MASU_LIVE_TEXTURES_GLSL
 #define MASU_LIVE_TEXTURES_GLSL
@@ -20,9 +21,10 @@ int masu_live_steps(vec2 texels)
     return int(clamp(ceil(masu_sqrt(dot(texels, texels)) - 0.01), 1.0, float(masu_live_taps)));
 }
 
-/* Mean colour and alpha over a pixel; colour is weighted by alpha. cell: two opposite corners in the texture; at: in
- * the cell, 0..1; dx, dy: its change to the next pixel. */
-vec4 masu_live_mean(sampler2DArray image, float layer, vec4 cell, vec2 at, vec2 dx, vec2 dy, uint outside)
+/* Mean colour and alpha over a pixel; colour is weighted by alpha. cell: two opposite corners in
+ * the texture; at: in the cell, 0..1; dx, dy: its change to the next pixel. */
+vec4 masu_live_mean(sampler2DArray image, float layer, vec4 cell, vec2 at, vec2 dx, vec2 dy,
+                    uint outside)
 {
     vec2 size = vec2(textureSize(image, 0).xy), extent = cell.zw - cell.xy;
     vec2 low = min(cell.xy, cell.zw) * size + 0.5, high = max(cell.xy, cell.zw) * size - 0.5;

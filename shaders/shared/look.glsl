@@ -1,7 +1,8 @@
 /*
- * look.glsl: the look of an instance between vertex and fragment shader: tint and emission, and the fade
- * with the number that its pattern starts from: the frame's in rungs with temporal upscaling, which
- * average the patterns, else 0. After polygons.glsl and `frame` in a vertex shader (MASU_LOOK_OUT).
+ * look.glsl: the look of an instance between vertex and fragment shader: tint and emission, and the
+ * fade with the number that its pattern starts from: the frame's in rungs with temporal upscaling,
+ * which average the patterns, else 0. After polygons.glsl and `frame` in a vertex shader
+ * (MASU_LOOK_OUT).
  */
 #ifndef MASU_LOOK_GLSL
 #define MASU_LOOK_GLSL
@@ -18,7 +19,8 @@ void masu_pass_look(uint id)
         masu_instance_data look = masu_look_of(id);
         out_tint = look.row0;
         float fade = masu_sane(look.row2.x, 0.0, 1.0);
-        out_fade = uvec2(uint(fade * MASU_FADE_STEPS), frame.temporal.x != 0u ? frame.history.x : 0u);
+        out_fade = uvec2(uint(fade * MASU_FADE_STEPS),
+                         frame.temporal.x != 0u ? frame.history.x : 0u);
     }
 }
 #else

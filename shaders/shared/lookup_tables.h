@@ -13,9 +13,9 @@
  *                        times (1 - h.v)^5. From here on only for scenes with clear coat
  *   TABLE_COAT_AVERAGE   4 floats per row: the averages of both; a and b of the coat
  *   TABLE_TRANSFORM      only for scenes with area lights: two 32-bit values of two snorm16 numbers
- *                        each for every node: a, b, c / alpha, d / (2 alpha) (shaders/light/source.glsl,
+ *                        each for every node: a, b, c / alpha, d / (2 alpha) (light/source.glsl,
  *                        fitted by tools/generate/make_cosines.c). TRANSFORM_COLUMNS nodes over
- *                        sqrt(1 - N.V), TRANSFORM_ROWS rows over roughness, both interpolated */
+ *                        sqrt(1 - N.V), TRANSFORM_ROWS rows over roughness, interpolated in both */
 #define MASU_TABLE_SIZE 64
 #define MASU_TABLE_ROWS 256
 #define MASU_TABLE_SMOOTHEST 0.045

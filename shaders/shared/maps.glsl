@@ -1,14 +1,14 @@
 /*
- * maps.glsl: the textures of a material, for gbuffer.frag and cascade.frag. The flags are the same for all of a draw,
- * so every branch here is uniform and implicit derivatives are defined.
+ * maps.glsl: the textures of a material, for gbuffer.frag and cascade.frag. The flags are the same
+ * for all of a draw, so every branch here is uniform and implicit derivatives are defined.
  *
  * Tangents are not stored: the directions in which u and v grow follow from the derivatives of
- * position and texture coordinate (Schueler, "Followup: Normal Mapping Without Precomputed Tangents",
- * 2013). That saves 8 bytes a vertex, needs no splitting of vertices where a mapping mirrors, and is
- * as precise everywhere: positions are relative to the camera, so that the step from pixel to pixel
- * is some 1e-3 of them or more, whatever the distance. Within one triangle the frame follows the
- * interpolated normal but not an interpolated tangent: on coarse meshes the relief has facets that
- * MikkTSpace's would not have.
+ * position and texture coordinate (Schueler, "Followup: Normal Mapping Without Precomputed
+ * Tangents", 2013). That saves 8 bytes a vertex, needs no splitting of vertices where a mapping
+ * mirrors, and is as precise everywhere: positions are relative to the camera, so that the step
+ * from pixel to pixel is some 1e-3 of them or more, whatever the distance. Within one triangle the
+ * frame follows the interpolated normal but not an interpolated tangent: on coarse meshes the
+ * relief has facets that MikkTSpace's would not have.
  */
 #ifndef MASU_MAPS_GLSL
 #define MASU_MAPS_GLSL
@@ -16,8 +16,8 @@
 #include "shared/materials.h"
 #include "shared/facing.glsl"
 
-/* Flags of the material, layers of its maps, how much more often than its colour the others repeat: the
- * push constants', or whoever includes this says; and so the bias of mip levels. */
+/* Flags of the material, layers of its maps, how much more often than its colour the others repeat:
+ * the push constants', or whoever includes this says; and so the bias of mip levels. */
 #ifndef MASU_MAPS_FLAGS
 #define MASU_MAPS_FLAGS push.flags
 #define MASU_MAPS_LAYERS push.layers
@@ -47,7 +47,8 @@ layout(set = MASU_SET_TEXTURES, binding = 6) uniform sampler2DArray live_map;
 #include "shared/live_textures.glsl"
 #endif
 
-/* Where a map is read: of MASU_MAPS_SECOND, where whoever includes this has it, a bit for each slot. */
+/* Where a map is read: of MASU_MAPS_SECOND, where whoever includes this has it, a bit for each
+ * slot. */
 vec2 masu_map_at(uint slot, vec2 at)
 {
 #ifdef MASU_MAPS_SECOND
@@ -87,7 +88,8 @@ float masu_sample_maps(vec2 at, float live, inout masu_surface s)
     bool is_live = masu_live_maps && live > 0.0;
     if (is_live) {
         vec2 p = masu_map_at(0u, at);
-        base = masu_live_mean(live_map, live - 1.0, vec4(0.0, 0.0, 1.0, 1.0), p, dFdx(p), dFdy(p), MASU_LIVE_WRAP);
+        base = masu_live_mean(live_map, live - 1.0, vec4(0.0, 0.0, 1.0, 1.0), p, dFdx(p), dFdy(p),
+                              MASU_LIVE_WRAP);
         s.emissive *= base.rgb;
     } else {
         base = masu_base(at);
@@ -98,7 +100,9 @@ float masu_sample_maps(vec2 at, float live, inout masu_surface s)
 #endif
     s.albedo *= base.rgb;
     if ((MASU_MAPS_FLAGS & MASU_MAP_SURFACE) != 0u) {
-        vec2 surface = texture(surface_map, vec3(masu_map_at(2u, at) * MASU_MAPS_DETAIL, masu_layer(2u)), bias).rg;
+        vec2 surface = texture(surface_map,
+                               vec3(masu_map_at(2u, at) * MASU_MAPS_DETAIL, masu_layer(2u)), bias)
+                           .rg;
         s.roughness *= surface.r;
         if ((MASU_MAPS_FLAGS & MASU_MAP_METAL) != 0u) {
             s.metallic *= surface.g;
@@ -109,23 +113,31 @@ float masu_sample_maps(vec2 at, float live, inout masu_surface s)
     }
     if ((MASU_MAPS_FLAGS & MASU_MAP_OCCLUSION) != 0u) {
         float layer = float(MASU_MAPS_FLAGS >> MASU_MAP_OCCLUSION_SHIFT);
-        s.occlusion *= texture(occlusion_map, vec3(masu_map_at(4u, at) * MASU_MAPS_DETAIL, layer), bias).r;
+        s.occlusion *=
+            texture(occlusion_map, vec3(masu_map_at(4u, at) * MASU_MAPS_DETAIL, layer), bias).r;
     }
 #ifdef MASU_MAPS_COAT_LAYER
     if (masu_own_coats && (MASU_MAPS_FLAGS & MASU_MAP_COAT) != 0u) {
-        vec2 coat = texture(coat_map, vec3(masu_map_at(5u, at) * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)), bias).rg;
+        vec2 coat =
+            texture(coat_map,
+                    vec3(masu_map_at(5u, at) * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)), bias)
+                .rg;
         s.coat *= coat.r;
         s.coat_roughness *= coat.g;
     }
     if (masu_extra_lobes != 0u && (MASU_MAPS_FLAGS & MASU_MAP_LOBE) != 0u) {
-        masu_scale_lobe(s, texture(coat_map, vec3(masu_map_at(5u, at) * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)), bias));
+        masu_scale_lobe(
+            s, texture(coat_map,
+                       vec3(masu_map_at(5u, at) * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)),
+                       bias));
     }
 #endif
     return base.a;
 }
 
 /* A relief is seen where it faces the viewer. Normals that point away, which near a silhouette some
- * of any map do, would shine there as if seen edge-on; they are turned until they are all but edge-on. Not renormalised.
+ * of any map do, would shine there as if seen edge-on; they are turned until they are all but
+ * edge-on. Not renormalised.
  */
 vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
 {
@@ -133,7 +145,8 @@ vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
     return masu_lean_to_eye(masu_normalize(normal, fallback), rel, least);
 }
 
-/* A direction of tangent space, z above 0, in world space, on the side of `normal`; at: the coordinates. */
+/* A direction of tangent space, z above 0, in world space, on the side of `normal`; at: the
+ * coordinates. */
 vec3 masu_from_tangents(vec2 xy, vec3 normal, vec3 rel, vec2 at)
 {
     float z = sqrt(max(1.0 - dot(xy, xy), 0.0));
@@ -144,7 +157,8 @@ vec3 masu_from_tangents(vec2 xy, vec3 normal, vec3 rel, vec2 at)
     vec3 n = masu_normalize(normal, vec3(0.0, 1.0, 0.0));
     /* The gradients of u and v on the surface, times the area of the pixel's footprint, whose sign
      * says on which side of the surface the normal is. Each is made a unit vector, as bakers of
-     * normal maps have it, however the mapping stretches. v grows down the image, +y of the map is up. */
+     * normal maps have it, however the mapping stretches. v grows down the image, +y of the map is
+     * up. */
     vec3 right = cross(dy, n);
     vec3 down = cross(n, dx);
     float side = dot(right, dx) < 0.0 ? -1.0 : 1.0;

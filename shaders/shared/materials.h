@@ -16,7 +16,7 @@
 #define MASU_MAP_OCCLUSION 16u
 #define MASU_MAP_COAT 32u
 #define MASU_MAP_ADDITIVE 0x10000u
-#define MASU_MAP_FAR_SIDE_FIRST 32u      /* transparent, which has no coat map: drawn twice, back faces first */
+#define MASU_MAP_FAR_SIDE_FIRST 32u /* transparent, without coat map: back faces are drawn first */
 #define MASU_MAP_TRANSMISSION 0x20000u   /* alpha of the base colour is transmission */
 #define MASU_MAP_LOBE 0x10000u           /* opaque: the coat's map is the lobe's */
 #define MASU_MAP_COAT_RELIEF 0x100000u   /* opaque: the map of emission has the coat's normals */
@@ -34,14 +34,16 @@
 #define MASU_TINTS_REFRACTED 8u /* and some with a thickness, which refracts the background */
 #define MASU_SHARP_GLASS 0.05
 
-/* Kinds of lobes beyond GGX with a grey f0 up to 0.08 (pack.glsl, masu_lobe_code); bit 1 << kind of masu_extra_lobes. */
+/* Kinds of lobes beyond GGX with a grey f0 up to 0.08 (pack.glsl, masu_lobe_code); bit 1 << kind of
+ * masu_extra_lobes. */
 #define MASU_LOBE_COLORED 1u /* f0 of any colour and strength */
 #define MASU_LOBE_SHEEN 2u
 #define MASU_LOBE_GRAIN 3u /* anisotropic */
 
-/* Transform of an instance: the rows of the 3x4 matrix object -> world space. With looks of instances
- * (MASU_DRAWS_LOOKS) the second half of the buffer has them: row0 rgb factor on the base colour, w on
- * the emission; row1 texture coordinates: xy offset, zw scale; row2.x fraction of pixels not drawn. */
+/* Transform of an instance: the rows of the 3x4 matrix object -> world space. With looks of
+ * instances (MASU_DRAWS_LOOKS) the second half of the buffer has them: row0 rgb factor on the base
+ * colour, w on the emission; row1 texture coordinates: xy offset, zw scale; row2.x fraction of
+ * pixels not drawn. */
 struct masu_instance_data {
     masu_vec4 row0;
     masu_vec4 row1;
@@ -57,8 +59,8 @@ struct masu_material_data {
     /* rgb linear radiance, 0: not emissive; w metallic 0..1. Materials that refract have none: w is
      * negative, the bits of two halves: thickness, then -index of refraction. */
     masu_vec4 emissive;
-    /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1; opacity plus twice the
-     * number of the live texture, 0: none */
+    /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1; opacity plus twice
+     * the number of the live texture, 0: none */
     masu_vec4 more;
 };
 

@@ -1,9 +1,10 @@
-/* meshes.h: uploads of meshes that the host creates at run time (src/frame/meshes.c), as the shaders
- * mesh_*.comp read them. A slot of the buffer, in uvec4:
+/* meshes.h: uploads of meshes that the host creates at run time (src/frame/meshes.c), as the
+ * shaders mesh_*.comp read them. A slot of the buffer, in uvec4:
  *
  *   0                    arguments of the indirect dispatches: workgroups, jobs, 1, 0
  *   1 + 4 j              job j, four elements, of one mesh:
- *     x first vertex           y vertices       z where they are; 0: unchanged   w 1: they have moved
+ *     x first vertex           y vertices       z where they are; 0: unchanged
+ *                                               w 1: they have moved
  *     x first triangle         y triangles; 0: unchanged     z where they are
  *                                               w where texture coordinates are; 0: none, all 0
  *     x first node             y nodes          z where they are      w material, as of ray hits

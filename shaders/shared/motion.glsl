@@ -1,6 +1,6 @@
 /*
- * motion.glsl: the velocity of a surface point, in the format of the image `velocity` (for rung.temporal
- * specular_composite.comp replaces it on mirrors by the velocity of the reflection):
+ * motion.glsl: the velocity of a surface point, in the format of the image `velocity` (for
+ * rung.temporal specular_composite.comp replaces it on mirrors by the velocity of the reflection):
  *
  *   x, y  previous position minus present one, pixels of this frame's render size, y down
  *   z     previous view depth / present one, minus 1; 0 for the sky
@@ -8,8 +8,8 @@
  *
  * so that previous = present + velocity. Both positions are projected by the same operations, and
  * a static point has a velocity of exactly 0. The difference of the two, and not "previous minus
- * pixel centre": a rasteriser that snaps vertices to a grid shows a point next to the pixel's centre.
- * Needs globals.glsl before it.
+ * pixel centre": a rasteriser that snaps vertices to a grid shows a point next to the pixel's
+ * centre. Needs globals.glsl before it.
  */
 #ifndef MASU_MOTION_GLSL
 #define MASU_MOTION_GLSL
@@ -41,7 +41,8 @@ vec4 masu_velocity(vec4 rel, vec4 before, vec2 size)
     vec2 ahead = told ? now.xy / now.z : vec2(0.0);
     vec2 behind = told ? was.xy / was.z : vec2(0.0);
     precise vec2 moved = (behind - ahead) * (0.5 * size);
-    float depth = told && rel.w > 0.0 ? (was.z - now.z) / now.z : 0.0; /* a GPU's x / x may not be 1 */
+    /* a GPU's x / x may not be 1 */
+    float depth = told && rel.w > 0.0 ? (was.z - now.z) / now.z : 0.0;
     vec4 velocity = vec4(moved, depth, 1.0);
     told = told && masu_finite(velocity) && all(lessThan(abs(velocity.xyz), vec3(65504.0)));
     return told ? velocity : vec4(0.0);

@@ -125,7 +125,8 @@ layout(constant_id = 13) const bool masu_fixed_output = false;
 
 bool masu_is_outside(uvec2 at)
 {
-    return !masu_whole_groups && any(greaterThanEqual(at, uvec2(pc.output_width, pc.output_height)));
+    return !masu_whole_groups &&
+           any(greaterThanEqual(at, uvec2(pc.output_width, pc.output_height)));
 }
 
 /* MASU_STORE_FILTERED: for a weighted mean of texels in 0..1, at a pixel inside the output: it

@@ -102,7 +102,8 @@ layout(constant_id = 21) const uint masu_extra_lobes = 0u;
 
 masu_surface masu_plain_surface(vec3 albedo, float roughness)
 {
-    return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0, vec2(0.0), 0u);
+    return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0, vec2(0.0),
+                        0u);
 }
 
 float masu_brightest(vec3 color)
@@ -122,14 +123,17 @@ vec3 masu_lobe_hue(uint code)
     vec2 others = vec2(code / 26u % 26u, code % 26u) * (1.0 / 25.0);
     others *= others;
     uint channel = code / 676u;
-    return channel == 0u ? vec3(1.0, others) : channel == 1u ? vec3(others.y, 1.0, others.x) : vec3(others, 1.0);
+    return channel == 0u   ? vec3(1.0, others)
+           : channel == 1u ? vec3(others.y, 1.0, others.x)
+                           : vec3(others, 1.0);
 }
 
 uint masu_hue_code(vec3 color, float brightest)
 {
     bool red = color.r >= brightest, green = !red && color.g >= brightest;
     vec2 others = red ? color.gb : green ? color.br : color.rg;
-    uvec2 steps = uvec2(sqrt(clamp(others / max(brightest, masu_tiny), vec2(0.0), vec2(1.0))) * 25.0 + 0.5);
+    uvec2 steps =
+        uvec2(sqrt(clamp(others / max(brightest, masu_tiny), vec2(0.0), vec2(1.0))) * 25.0 + 0.5);
     return ((red ? 0u : green ? 1u : 2u) * 26u + steps.x) * 26u + steps.y;
 }
 
@@ -152,16 +156,19 @@ void masu_set_lobe(inout masu_surface s, uint lobe)
 void masu_scale_lobe(inout masu_surface s, vec4 texel)
 {
     if (masu_has_lobe(s, MASU_LOBE_COLORED)) {
-        vec3 f0 = masu_lobe_hue(s.lobe >> 8 & 2047u) * (masu_lobe_root(s.lobe, 255u) * texel.a) * texel.rgb;
+        vec3 f0 = masu_lobe_hue(s.lobe >> 8 & 2047u) * (masu_lobe_root(s.lobe, 255u) * texel.a) *
+                  texel.rgb;
         float most = masu_brightest(f0);
         uint root = uint(sqrt(clamp(most, 0.0, 1.0)) * 255.0 + 0.5);
         masu_set_lobe(s, MASU_LOBE_COLORED << 21 | masu_hue_code(f0, most) << 8 | root);
     } else if (masu_has_lobe(s, MASU_LOBE_SHEEN)) {
-        vec3 color = masu_lobe_hue(s.lobe >> 10 & 2047u) * masu_lobe_root(s.lobe >> 5, 31u) * texel.rgb;
+        vec3 color = masu_lobe_hue(s.lobe >> 10 & 2047u) * masu_lobe_root(s.lobe >> 5, 31u) *
+                     texel.rgb;
         float most = masu_brightest(color);
         uint root = uint(sqrt(clamp(most, 0.0, 1.0)) * 31.0 + 0.5);
         uint rough = uint(clamp(float(s.lobe & 31u) * texel.a, 0.0, 31.0) + 0.5);
-        masu_set_lobe(s, MASU_LOBE_SHEEN << 21 | masu_hue_code(color, most) << 10 | root << 5 | rough);
+        masu_set_lobe(s,
+                      MASU_LOBE_SHEEN << 21 | masu_hue_code(color, most) << 10 | root << 5 | rough);
     }
 }
 #endif
@@ -216,7 +223,8 @@ vec3 masu_emitted(masu_surface s)
  * shadow or reflection is computed for it. */
 bool masu_is_unlit(masu_surface s)
 {
-    return masu_is_emissive(s) && !(masu_brightest(masu_sane(s.albedo, 0.0, 1.0)) > 0.0) && !(s.roughness < 1.0) && !(s.coat > 0.0);
+    return masu_is_emissive(s) && !(masu_brightest(masu_sane(s.albedo, 0.0, 1.0)) > 0.0) &&
+           !(s.roughness < 1.0) && !(s.coat > 0.0);
 }
 
 /* masu_is_unlit() of a packed normal. */
@@ -227,7 +235,8 @@ bool masu_is_unlit_texel(uint normal)
 
 /* The texel of albedo, and bits 26-31 of the normal, of an emitter; `glow`, `albedo` and
  * `roughness` are sane. */
-void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, out vec4 texel, out uint look)
+void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, out vec4 texel,
+                       out uint look)
 {
     float brightest = masu_brightest(glow);
     bool black = !(masu_brightest(albedo) > 0.0), metal = s.metallic >= 0.5;
@@ -238,11 +247,14 @@ void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, 
     uint channel = red ? 0u : green ? 169u : 338u;
     uint level = uint(sqrt(sqrt(brightest * (1.0 / masu_emissive_range))) * 127.0 + 0.5);
     uvec3 base = uvec3(sqrt(albedo) * 31.0 + 0.5);
-    vec4 lit = unpackUnorm4x8(base.r | base.g << 5 | base.b << 10 | (metal ? 1u << 15 : 0u) | level << 16 |
-                              (channel + hue.x * 13u + hue.y) << 23);
+    vec4 lit = unpackUnorm4x8(base.r | base.g << 5 | base.b << 10 | (metal ? 1u << 15 : 0u) |
+                              level << 16 | (channel + hue.x * 13u + hue.y) << 23);
     bool colored = !unlit && (!black || metal);
     texel = colored ? lit : vec4(sqrt(glow * (1.0 / masu_emissive_range)), roughness);
-    look = MASU_SURFACE_EMISSIVE << 30 | (unlit ? 0u : colored ? 1u + uint(roughness * 13.0 + 0.5) : 15u) << 26;
+    look = MASU_SURFACE_EMISSIVE << 30 | (unlit     ? 0u
+                                          : colored ? 1u + uint(roughness * 13.0 + 0.5)
+                                                    : 15u)
+                                             << 26;
 }
 
 /* The texel of albedo, and the bits of the normal texel except its direction, without emission. */
@@ -337,7 +349,8 @@ void masu_turn_grain(inout masu_surface s, vec3 n, vec3 grain)
     vec3 t, b;
     masu_lean_axes(n, t, b);
     vec2 at = vec2(dot(t, grain), dot(b, grain));
-    float half_turns = dot(at, at) > masu_tiny ? masu_atan2(at.y, at.x) * (128.0 / 3.14159265) : 0.0;
+    float half_turns = dot(at, at) > masu_tiny ? masu_atan2(at.y, at.x) * (128.0 / 3.14159265)
+                                               : 0.0;
     masu_set_lobe(s, (s.lobe & ~(127u << 7)) | (uint(int(round(half_turns)) + 256) & 127u) << 7);
 }
 
@@ -353,7 +366,8 @@ uvec2 masu_pack_lean(vec2 lean)
 {
     vec2 root = sqrt(min(abs(lean), vec2(1.0))) * 63.0 + 0.5;
     ivec2 steps = ivec2(root);
-    return uvec2(64 + (lean.x < 0.0 ? -steps.x : steps.x), 64 + (lean.y < 0.0 ? -steps.y : steps.y));
+    return uvec2(64 + (lean.x < 0.0 ? -steps.x : steps.x),
+                 64 + (lean.y < 0.0 ? -steps.y : steps.y));
 }
 
 vec2 masu_unpack_lean(uvec2 steps)
@@ -373,8 +387,9 @@ vec4 masu_pack_surface(masu_surface s)
         relief_steps = 126.0;
         if (s.lobe != 0u) {
             float above = 16.0 * floor(v.w * 15.0 + 0.5);
-            return vec4(float(s.lobe & 255u), float(s.lobe >> 15 & 15u), above + float(s.lobe >> 19 & 15u),
-                        float(128u + (s.lobe >> 8 & 127u))) / 255.0;
+            return vec4(float(s.lobe & 255u), float(s.lobe >> 15 & 15u),
+                        above + float(s.lobe >> 19 & 15u), float(128u + (s.lobe >> 8 & 127u))) /
+                   255.0;
         }
     }
     if (masu_own_coats) {
@@ -383,7 +398,8 @@ vec4 masu_pack_surface(masu_surface s)
         uvec2 steps = masu_pack_lean(lean);
         if (!(s.shadow >= 0.0) && coat >= 16.0 && (steps.x != 64u || steps.y != 64u)) {
             return vec4(8.0 * floor(v.x * 30.0 + 0.5) + float(steps.y & 7u), coat,
-                        16.0 * floor(v.w * 15.0 + 0.5) + float(steps.y >> 3), 128.0 + float(steps.x)) /
+                        16.0 * floor(v.w * 15.0 + 0.5) + float(steps.y >> 3),
+                        128.0 + float(steps.x)) /
                    255.0;
         }
     }
@@ -408,7 +424,8 @@ void masu_unpack_surface(vec4 texel, inout masu_surface s)
         if (bytes.a >= 128u && bytes.g < 16u) {
             s.shadow = -1.0;
             s.occlusion = float(bytes.b >> 4) / 15.0;
-            masu_set_lobe(s, bytes.r | (bytes.a & 127u) << 8 | bytes.g << 15 | (bytes.b & 15u) << 19);
+            masu_set_lobe(s,
+                          bytes.r | (bytes.a & 127u) << 8 | bytes.g << 15 | (bytes.b & 15u) << 19);
             return;
         }
     }
@@ -461,7 +478,9 @@ void masu_unpack_shining(vec4 texel, uint form, inout masu_surface s)
     others *= others;
     level *= level;
     uint channel = hue / 169u;
-    vec3 glow = channel == 0u ? vec3(1.0, others) : channel == 1u ? vec3(others.y, 1.0, others.x) : vec3(others, 1.0);
+    vec3 glow = channel == 0u   ? vec3(1.0, others)
+                : channel == 1u ? vec3(others.y, 1.0, others.x)
+                                : vec3(others, 1.0);
     s.albedo = albedo * albedo;
     s.metallic = float(word >> 15 & 1u);
     s.roughness = float(form - 1u) / 13.0;

@@ -26,7 +26,7 @@ struct masu_probe_grid {
     masu_vec4 origin;  /* xyz first probe; w metres by which points are moved along their normal */
     masu_vec4 spacing; /* xyz */
     masu_uvec4 counts; /* xyz; w coefficient sets of the sky */
-    masu_uvec4 more;   /* x suns, y 1: has a set for emission, z texels along the edge of a map, w 1: live */
+    masu_uvec4 more;   /* x suns; y 1: a set for emission; z texels per edge of a map; w 1: live */
     masu_vec4 sun_direction[MASU_PROBE_SUNS];
     masu_vec4 sun_inverse[4 * MASU_PROBE_SUNS]; /* rows of 16 */
 };

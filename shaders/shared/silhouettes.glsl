@@ -13,7 +13,8 @@
 
 const vec3 masu_edge_steps = vec3(1023.0, 2047.0, 1023.0);
 
-/* Light is 0 to 1. Whether two lights differ by more than 1.5 steps of 10 bits: else every bit of the pixel is kept. */
+/* Light is 0 to 1. Whether two lights differ by more than 1.5 steps of 10 bits: else every bit of
+ * the pixel is kept. */
 bool masu_edge_differs(vec3 a, vec3 b)
 {
     vec3 apart = abs(sqrt(masu_sane_unit(a)) - sqrt(masu_sane_unit(b)));

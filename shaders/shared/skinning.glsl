@@ -1,17 +1,19 @@
 /*
- * skinning.glsl: a rest vertex, bent by its joints. A dispatch has an invocation for each vertex of the largest
- * skin in x and a skin in y. Matrices are blended first, then applied: the same as the mean of where each puts
- * the vertex, for fewer operations, and the normal goes by the same matrix.
+ * skinning.glsl: a rest vertex, bent by its joints. A dispatch has an invocation for each vertex of
+ * the largest skin in x and a skin in y. Matrices are blended first, then applied: the same as the
+ * mean of where each puts the vertex, for fewer operations, and the normal goes by the same matrix.
  *
- *   joints         of each skin its first rest vertex, its first vertex, how many (0: it is hidden), where its
- *                  matrices begin; its first node in the trees for rays, how many, its first of boxes, where its
- *                  morph targets begin (0: it has none); then the matrices, three rows each; then, of each skin, how
- *                  many targets have a weight, and of each of these its first delta and the weight
- *   skin_vertices  two elements a vertex: position and normal as any vertex; joints and weights, 16 bits each; then
- *                  deltas of morph targets, one element each: position, and the normal in 11, 11 and 10 bits
+ *   joints         of each skin its first rest vertex, its first vertex, how many (0: it is
+ *                  hidden), where its matrices begin; its first node in the trees for rays, how
+ *                  many, its first of boxes, where its morph targets begin (0: it has none); then
+ *                  the matrices, three rows each; then, of each skin, how many targets have a
+ *                  weight, and of each of these its first delta and the weight
+ *   skin_vertices  two elements a vertex: position and normal as any vertex; joints and weights, 16
+ *                  bits each; then deltas of morph targets, one element each: position, and the
+ *                  normal in 11, 11 and 10 bits
  *
- * Positions are precise: the pass of now and that of the previous frame get the same bits of the same joints, and
- * what stood still a velocity of exactly 0.
+ * Positions are precise: the pass of now and that of the previous frame get the same bits of the
+ * same joints, and what stood still a velocity of exactly 0.
  */
 #ifndef MASU_SKINNING_GLSL
 #define MASU_SKINNING_GLSL
@@ -21,7 +23,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKIN_VERTICES, std430) readonly buffer SkinVertices
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKIN_VERTICES, std430)
+    readonly buffer SkinVertices
 {
     uvec4 skin_vertices[];
 };

@@ -49,9 +49,9 @@
 #define MASU_SPRITE_KEEP_COLOR 2u
 #define MASU_SPRITE_ON_TOP 1u
 
-/* Head of a slot of the texels that a frame writes, in 32-bit values: xyz arguments of the dispatch,
- * number of writes; then MASU_TEXTURE_WRITE_WORDS per write: x, y, width, height, layer, first
- * texel in the buffer, 0, 0. The texels follow. */
+/* Head of a slot of the texels that a frame writes, in 32-bit values: xyz arguments of the
+ * dispatch, number of writes; then MASU_TEXTURE_WRITE_WORDS per write: x, y, width, height, layer,
+ * first texel in the buffer, 0, 0. The texels follow. */
 #define MASU_LIVE_TEXTURES_MAX 256
 #define MASU_TEXTURE_WRITES 64
 #define MASU_TEXTURE_WRITE_WORDS 8

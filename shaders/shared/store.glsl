@@ -10,9 +10,10 @@
  *   MASU_STORE_HALF(img, p, v)    vec4 v to -65504..65504     rgba16f, rg16f, r11f_g11f_b10f
  *   MASU_STORE_R32F(img, p, x)    float x, finite             r32f
  *   MASU_STORE_UINT(img, p, u)    uint or uvec4 u, unchanged  r32ui and its like
- *   MASU_STORE_TEN(img, p, v)     vec3 v to 0..1              r32ui view of an image of 10 bits a channel
- *   MASU_STORE_SAFE(img, p, v)    vec4 v, unchanged           v must be finite, and p inside the image. The format
- *                                                             clamps v; masu_ten_bits requires 0..1
+ *   MASU_STORE_TEN(img, p, v)     vec3 v to 0..1              r32ui view of 10 bits a channel
+ *   MASU_STORE_SAFE(img, p, v)    vec4 v, unchanged           v must be finite, p inside the image.
+ *                                                             The format clamps v; masu_ten_bits
+ *                                                             requires 0..1
  *   MASU_STORE_LAYER(img, p, layer, v)                        the same to a layer of an array
  *
  * p is an ivec2 or a uvec2. Each argument is evaluated once. Write a semicolon after the macro and

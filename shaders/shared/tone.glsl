@@ -1,14 +1,14 @@
 /*
- * tone.glsl: tone curves, encodings, and the bins of luminance that exposure is metered by. Total: NaN
- * and negative input is black, +Inf and what is beyond 65504 as bright as a half can be.
+ * tone.glsl: tone curves, encodings, and the bins of luminance that exposure is metered by. Total:
+ * NaN and negative input is black, +Inf and what is beyond 65504 as bright as a half can be.
  *
  * Curves, of radiance times exposure, where 1 is white (include/masu.h, masu_tone):
- *   filmic   K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic Tone
- *            Mapping Curve", 2016). It reaches 1 near x = 8.1 and would run past it
+ *   filmic   K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic
+ *            Tone Mapping Curve", 2016). It reaches 1 near x = 8.1 and would run past it
  *   neutral  Khronos PBR Neutral (Khronos 2024, E. Lalish): the reflection of 0.04 that every
  *            dielectric adds is taken off; the rest is unchanged below 0.76 of the most; above,
- *            the largest channel bends towards the most, and the others go towards it as it bends. With
- *            a display that goes beyond white, "the most" is that of the display
+ *            the largest channel bends towards the most, and the others go towards it as it bends.
+ *            With a display that goes beyond white, "the most" is that of the display
  */
 #ifndef MASU_TONE_GLSL
 #define MASU_TONE_GLSL
@@ -86,7 +86,8 @@ float masu_pq_decode(float code)
 {
     float y = masu_pow(clamp(code, 0.0, 1.0), 1.0 / masu_pq_m2);
     /* The denominator is c2 - c3 = 0.164 at least. */
-    return 1e4 * masu_pow(max(y - masu_pq_c1, 0.0) / (masu_pq_c2 - masu_pq_c3 * y), 1.0 / masu_pq_m1);
+    return 1e4 *
+           masu_pow(max(y - masu_pq_c1, 0.0) / (masu_pq_c2 - masu_pq_c3 * y), 1.0 / masu_pq_m1);
 }
 
 /* Primaries of BT.709 to those of BT.2020 (BT.2087). */
@@ -103,9 +104,9 @@ float masu_luminance(vec3 c)
     return luminance;
 }
 
-/* Bins are along the bits of the float, eight to an octave: evenly spaced in log2 from octave to octave
- * and evenly in luminance within one, the same on every driver, which log2() is not. Pixels that are
- * black or not finite are in none: EXPOSURE_BINS. */
+/* Bins are along the bits of the float, eight to an octave: evenly spaced in log2 from octave to
+ * octave and evenly in luminance within one, the same on every driver, which log2() is not. Pixels
+ * that are black or not finite are in none: EXPOSURE_BINS. */
 uint masu_luminance_bin(vec3 c)
 {
     const uint first = uint(127 + MASU_EXPOSURE_LOG2) << 3;

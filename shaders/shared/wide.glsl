@@ -5,8 +5,8 @@
  * micrometre, and so must the terms.
  *
  * Exact sum and product: T. J. Dekker, "A floating-point technique for extending the available
- * precision", Numer. Math. 18, 1971. `precise` keeps compilers from simplifying the error terms away.
- * No fma: GLSL lets it be two roundings.
+ * precision", Numer. Math. 18, 1971. `precise` keeps compilers from simplifying the error terms
+ * away. No fma: GLSL lets it be two roundings.
  */
 #ifndef MASU_WIDE_GLSL
 #define MASU_WIDE_GLSL

@@ -41,7 +41,9 @@ masu_guide masu_unpack_guide(uvec2 texel)
 
 uvec2 masu_pack_guide(uint packed_normal, float roughness, float depth, uint pixel, bool mixed)
 {
-    uint rough = roughness > MASU_TABLE_SMOOTHEST ? uint(masu_sane(roughness, 0.0, 1.0) * 63.0 + 0.5) : 0u;
+    uint rough = roughness > MASU_TABLE_SMOOTHEST
+                     ? uint(masu_sane(roughness, 0.0, 1.0) * 63.0 + 0.5)
+                     : 0u;
     return uvec2((packed_normal & 0x3FFFFFFu) | rough << 26,
                  (floatBitsToUint(depth) & ~7u) | pixel | (mixed ? 4u : 0u));
 }

@@ -25,7 +25,8 @@ void masu_lobes(masu_bsdf b, vec3 l, out vec3 base, out float coat)
     if (b.coat > 0.0) {
         float steep = masu_schlick(min(over, b.coat_n_v));
         base *= max(1.0 - b.coat * (b.coat_line.x + b.coat_line.y * steep), 0.0);
-        coat = b.coat * (0.04 + 0.96 * s) * masu_ggx(b.coat_n, h, b.coat_alpha, over, b.coat_n_v) * over;
+        coat = b.coat * (0.04 + 0.96 * s) * masu_ggx(b.coat_n, h, b.coat_alpha, over, b.coat_n_v) *
+               over;
     }
 #endif
 }

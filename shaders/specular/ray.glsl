@@ -40,7 +40,8 @@ const float masu_most_worth = 4.0;
 /* Lobes of mirrors have densities that exceed a half float; their square roots end at 31,600. */
 uint masu_pack_drawn(float density, float worth)
 {
-    return packHalf2x16(vec2(masu_sqrt(masu_sane(density, 1e-6, 1e9)), masu_sane(worth, masu_least_worth, masu_most_worth)));
+    return packHalf2x16(vec2(masu_sqrt(masu_sane(density, 1e-6, 1e9)),
+                             masu_sane(worth, masu_least_worth, masu_most_worth)));
 }
 
 float masu_drawn_density(uint word)
@@ -97,7 +98,8 @@ uint masu_pack_sdf_motion(vec3 v)
     if (e < -62) {
         return MASU_HIT_SDF;
     }
-    ivec3 m = ivec3(round(clamp(c * uintBitsToFloat(uint(127 + 7 - e) << 23), vec3(-127.0), vec3(127.0))));
+    ivec3 m = ivec3(
+        round(clamp(c * uintBitsToFloat(uint(127 + 7 - e) << 23), vec3(-127.0), vec3(127.0))));
     uvec3 bits = uvec3(m) & 255u;
     return MASU_HIT_SDF | bits.x | bits.y << 8 | bits.z << 16 | uint(e + 63) << 24;
 }

@@ -116,8 +116,10 @@ void masu_trace_boxes(uvec4 a, uvec4 b, uvec4 c, masu_trace_ray ray, float t_min
     uvec3 low = b.xyz, high = uvec3(b.w, c.xy);
     uvec3 front = mix(high, low, ray.forward), back = mix(low, high, ray.forward);
     /* Axis by axis: all six planes of four boxes would take 24 registers. */
-    enter = max(floatBitsToInt(masu_trace_bytes(front.x) * scale.x + first.x), ivec4(floatBitsToInt(t_min)));
-    ivec4 leave = min(floatBitsToInt(masu_trace_bytes(back.x) * scale.x + last.x), ivec4(floatBitsToInt(t_max)));
+    enter = max(floatBitsToInt(masu_trace_bytes(front.x) * scale.x + first.x),
+                ivec4(floatBitsToInt(t_min)));
+    ivec4 leave = min(floatBitsToInt(masu_trace_bytes(back.x) * scale.x + last.x),
+                      ivec4(floatBitsToInt(t_max)));
     enter = max(enter, floatBitsToInt(masu_trace_bytes(front.y) * scale.y + first.y));
     leave = min(leave, floatBitsToInt(masu_trace_bytes(back.y) * scale.y + last.y));
     enter = max(enter, floatBitsToInt(masu_trace_bytes(front.z) * scale.z + first.z));
@@ -153,7 +155,8 @@ void masu_trace_next(uint child, uint hits, uvec4 order, int bottom, inout uint 
     bool pop = hits == 0u;
     going = !pop || left > 0u;
     if (hits > 1u) {
-        if (left > 0u && depth < masu_trace_levels) masu_trace_stack[masu_trace_slot(depth++)] = rest;
+        if (left > 0u && depth < masu_trace_levels)
+            masu_trace_stack[masu_trace_slot(depth++)] = rest;
         rest = child << 8 | (hits - 1u) << 6;
         rest |= (order.y & 3u) | (order.z & 3u) << 2 | (order.w & 3u) << 4;
     }

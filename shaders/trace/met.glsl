@@ -33,7 +33,8 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
     vec3 normal = masu_trace_vertex_normal(triangle.x) * weights.x +
                   masu_trace_vertex_normal(triangle.y) * weights.y +
                   masu_trace_vertex_normal(triangle.z) * weights.z;
-    vec3 flat_normal = masu_normalize(masu_trace_upright(hit.y, cross(p1 - p0, p2 - p0)), -direction);
+    vec3 flat_normal = masu_normalize(masu_trace_upright(hit.y, cross(p1 - p0, p2 - p0)),
+                                      -direction);
     m.normal = masu_normalize(masu_trace_upright(hit.y, normal), flat_normal);
     m.normal = dot(flat_normal, direction) > 0.0 ? -m.normal : m.normal;
     /* As in the raster: a normal that points away is rotated until it does not. */
@@ -58,10 +59,12 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
             moved = masu_trace_look(hit.y, 1u);
             uv = uv * moved.zw + moved.xy;
         }
-        vec2 u1 = masu_trace_texcoord(triangle.y, 0u) - u0, u2 = masu_trace_texcoord(triangle.z, 0u) - u0;
+        vec2 u1 = masu_trace_texcoord(triangle.y, 0u) - u0,
+             u2 = masu_trace_texcoord(triangle.z, 0u) - u0;
         vec3 w1 = masu_trace_now(hit.y, vec4(p1 - p0, 0.0));
         vec3 w2 = masu_trace_now(hit.y, vec4(p2 - p0, 0.0));
-        float across = length(cross(w1, w2)), wide = abs((u1.x * u2.y - u1.y * u2.x) * moved.z * moved.w);
+        float across = length(cross(w1, w2)),
+              wide = abs((u1.x * u2.y - u1.y * u2.x) * moved.z * moved.w);
         float density = masu_sqrt(wide * masu_rcp(across)); /* texture coordinates per metre */
         float lod = masu_log2(max(width, 1e-9) * density /
                               max(masu_sqrt(abs(dot(flat_normal, direction))), 0.1));

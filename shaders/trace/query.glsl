@@ -46,7 +46,8 @@ masu_ray_hit masu_trace(vec3 origin, vec3 direction, float t_min, float t_max)
                  most >= 1e-6 && most <= 1e6 && start < far;
     if (!going) return best;
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, masu_trace_top, gl_RayFlagsNoneEXT, 0xFFu, origin, start, direction, far);
+    rayQueryInitializeEXT(query, masu_trace_top, gl_RayFlagsNoneEXT, 0xFFu, origin, start,
+                          direction, far);
     for (int i = 0; i < MASU_TRACE_VISITS; i++) {
         going = rayQueryProceedEXT(query);
         if (!going) break;
@@ -55,13 +56,15 @@ masu_ray_hit masu_trace(vec3 origin, vec3 direction, float t_min, float t_max)
         uint instance = uint(rayQueryGetIntersectionInstanceIdEXT(query, false));
         vec2 weights = rayQueryGetIntersectionBarycentricsEXT(query, false);
         vec3 d = rayQueryGetIntersectionObjectRayDirectionEXT(query, false);
-        if (MASU_TRACE_OPAQUE(triangle, instance, weights, d)) rayQueryConfirmIntersectionEXT(query);
+        if (MASU_TRACE_OPAQUE(triangle, instance, weights, d))
+            rayQueryConfirmIntersectionEXT(query);
     }
     if (going) {
         masu_trace_exceeded = true;
         return best;
     }
-    if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT) {
+    if (rayQueryGetIntersectionTypeEXT(query, true) ==
+        gl_RayQueryCommittedIntersectionTriangleEXT) {
         best.t = rayQueryGetIntersectionTEXT(query, true);
         best.triangle = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true)) +
                         uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));

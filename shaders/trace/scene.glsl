@@ -34,7 +34,8 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_FRAME, std430) readonly 
 {
     uvec4 masu_trace_frame[];
 };
-layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_VERTICES, std430) readonly buffer TraceVertices
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_VERTICES, std430)
+    readonly buffer TraceVertices
 {
     uvec4 masu_trace_vertices[];
 };
@@ -69,14 +70,15 @@ uvec4 masu_trace_triangle(uint triangle)
     return masu_trace_static[head.x + min(triangle, max(head.z, 1u) - 1u)];
 }
 
-/* Row of a traced instance's transform, object to world minus anchor: 0 to 2 now, 3 to 5 in the previous frame. */
+/* Row of a traced instance's transform, object to world minus anchor: 0 to 2 now, 3 to 5 in the
+ * previous frame. */
 vec4 masu_trace_row(uint traced, uint row)
 {
     return uintBitsToFloat(masu_trace_frame[masu_trace_frame[0].w + 6u * traced + row]);
 }
 
-/* Row of a traced instance's look, if masu_looks: 0 tint, and factor on the emission; 1 offset and scale of texture
- * coordinates. */
+/* Row of a traced instance's look, if masu_looks: 0 tint, and factor on the emission; 1 offset and
+ * scale of texture coordinates. */
 layout(constant_id = 24) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
 const bool masu_looks = (masu_draws_more & MASU_DRAWS_LOOKS) != 0u;
 vec4 masu_trace_look(uint traced, uint row)

@@ -14,7 +14,8 @@
 #extension GL_EXT_control_flow_attributes : require
 
 #ifdef MASU_TRACE_TEXTURES
-layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430) readonly buffer TraceTexcoords
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430)
+    readonly buffer TraceTexcoords
 {
     uvec2 masu_trace_texcoords[];
 };
@@ -89,7 +90,8 @@ vec4 masu_trace_picture(uint picture, vec2 uv, float lod, uint wrap)
         int y = masu_trace_wrap(int(corner.y) + off.y, size.y, wrap >> 2 & 3u);
         vec4 texel = masu_trace_texel(first + uint(y * size.x + x));
         texel.rgb *= texel.rgb;
-        sum += texel * mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
+        sum += texel * mix(1.0 - part.x, part.x, float(off.x)) *
+               mix(1.0 - part.y, part.y, float(off.y));
     }
     return sum;
 }
@@ -105,13 +107,15 @@ vec4 masu_trace_sized(uint picture, vec2 uv, float width, uint wrap)
 vec2 masu_trace_uv(uvec3 vertices, vec2 b)
 {
     vec2 p = masu_trace_texcoord(vertices.x, 0u);
-    return p + (masu_trace_texcoord(vertices.y, 0u) - p) * b.x + (masu_trace_texcoord(vertices.z, 0u) - p) * b.y;
+    return p + (masu_trace_texcoord(vertices.y, 0u) - p) * b.x +
+           (masu_trace_texcoord(vertices.z, 0u) - p) * b.y;
 }
 
 vec2 masu_trace_second_uv(uvec3 vertices, vec2 b)
 {
     vec2 p = masu_trace_texcoord(vertices.x, 1u);
-    return p + (masu_trace_texcoord(vertices.y, 1u) - p) * b.x + (masu_trace_texcoord(vertices.z, 1u) - p) * b.y;
+    return p + (masu_trace_texcoord(vertices.y, 1u) - p) * b.x +
+           (masu_trace_texcoord(vertices.z, 1u) - p) * b.y;
 }
 
 /* Alpha masks: whether the surface exists at this point. Reads the largest mip: many rays average
@@ -124,7 +128,8 @@ bool masu_trace_there(uvec4 about, vec2 b)
     uint at = masu_trace_static[masu_trace_static[0].w].x + 4u * (about.w & MASU_TRACE_MATERIAL);
     uvec4 maps = masu_trace_static[at + 3u];
     float alpha = masu_trace_picture(maps.x, masu_trace_uv(about.xyz, b), 0.0, maps.w).a;
-    return alpha >= float(maps.z >> MASU_MAP_CUTOFF_SHIFT & 255u) * (0.999999 / 255.0); /* shared/maps.glsl */
+    /* shared/maps.glsl */
+    return alpha >= float(maps.z >> MASU_MAP_CUTOFF_SHIFT & 255u) * (0.999999 / 255.0);
 }
 #endif
 
@@ -150,7 +155,8 @@ bool masu_trace_opaque(uint triangle, vec2 b, vec3 d)
     return true;
 #endif
 }
-#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) masu_trace_opaque(triangle, barycentrics, d)
+#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d)                                     \
+    masu_trace_opaque(triangle, barycentrics, d)
 #endif
 
 #endif

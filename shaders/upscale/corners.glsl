@@ -20,8 +20,10 @@ vec4 masu_corner(sampler2D image, vec2 corner, vec2 size, vec2 texel)
  * or row is moved inwards by one, which repeats that column or row. */
 masu_corners masu_corners_of(sampler2D image, vec2 at, vec2 size, vec2 texel)
 {
-    vec4 a = masu_corner(image, at, size, texel), b = masu_corner(image, at + vec2(1.0, 0.0), size, texel);
-    vec4 c = masu_corner(image, at + vec2(0.0, 1.0), size, texel), d = masu_corner(image, at + 1.0, size, texel);
+    vec4 a = masu_corner(image, at, size, texel),
+         b = masu_corner(image, at + vec2(1.0, 0.0), size, texel);
+    vec4 c = masu_corner(image, at + vec2(0.0, 1.0), size, texel),
+         d = masu_corner(image, at + 1.0, size, texel);
     return masu_corners(a.y, a.x, b.y, a.z, c.y, vec4(a.w, b.z, c.x, d.y));
 }
 
@@ -37,7 +39,8 @@ float masu_most_of(vec4 v)
 
 float masu_most_of(masu_corners c)
 {
-    return max(max(masu_most_of(c.diagonal), masu_most_of(vec4(c.left, c.right, c.above, c.below))), c.own);
+    return max(max(masu_most_of(c.diagonal), masu_most_of(vec4(c.left, c.right, c.above, c.below))),
+               c.own);
 }
 
 /* Offset of the texel with the depth `nearest`, as found.glsl stores it. If several have it, a
@@ -58,7 +61,9 @@ uint masu_way_to(masu_corners c, float nearest)
 
 float masu_least_of(masu_corners c)
 {
-    return min(min(masu_least_of(c.diagonal), masu_least_of(vec4(c.left, c.right, c.above, c.below))), c.own);
+    return min(
+        min(masu_least_of(c.diagonal), masu_least_of(vec4(c.left, c.right, c.above, c.below))),
+        c.own);
 }
 
 #endif

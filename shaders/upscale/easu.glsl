@@ -3,10 +3,10 @@
  * approximate reciprocals included. The scalar judge is tests/reference/fsr1.c.
  *
  * The result jumps, by up to tens of 255ths, if the gradient is taken as zero, and if three
- * neighbours of different colour have the same luma: one unit in the last place then decides between a
- * straight edge and none. With MASU_EXACT (debug.exact) every operation is rounded by itself, in AMD's
- * order, so that all drivers take the same side. Without, compilers fuse and taps are placed in steps:
- * 0.3 of the operations.
+ * neighbours of different colour have the same luma: one unit in the last place then decides
+ * between a straight edge and none. With MASU_EXACT (debug.exact) every operation is rounded by
+ * itself, in AMD's order, so that all drivers take the same side. Without, compilers fuse and taps
+ * are placed in steps: 0.3 of the operations.
  */
 #ifndef MASU_EASU_GLSL
 #define MASU_EASU_GLSL
@@ -130,7 +130,8 @@ vec3 masu_edge_of(masu_taps t, vec2 p)
     return add_edge(edge, w.w, g, j, k, l, o);
 }
 
-/* The same at f, g, j and k, not weighted yet: gradient and straightness, for all pixels between them. */
+/* The same at f, g, j and k, not weighted yet: gradient and straightness, for all pixels between
+ * them. */
 struct masu_centres {
     vec4 x, y, z;
 };
@@ -143,8 +144,10 @@ masu_centres masu_centres_of(masu_taps t)
     masu_centres m;
     m.x = vec4(g - e, h - f, k - i, l - j);
     m.y = vec4(j - b, k - c, n - f, o - g);
-    m.z = vec4(straightness(e, f, g) + straightness(b, f, j), straightness(f, g, h) + straightness(c, g, k),
-               straightness(i, j, k) + straightness(f, j, n), straightness(j, k, l) + straightness(g, k, o));
+    m.z = vec4(straightness(e, f, g) + straightness(b, f, j),
+               straightness(f, g, h) + straightness(c, g, k),
+               straightness(i, j, k) + straightness(f, j, n),
+               straightness(j, k, l) + straightness(g, k, o));
     return m;
 }
 

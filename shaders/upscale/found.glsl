@@ -2,11 +2,11 @@
  * found.glsl: the result of temporal_find.comp for a pixel, which temporal.comp and
  * temporal_twice.comp read: two 32-bit values.
  *
- *   x   bits 0 to 26   lower limit of the history's red, green and blue, 9 bits each, display-linear:
- *                      bits 18 to 26 of the float, which is 2^-15 to 1, rounded down. Black is
- *                      2^-15, a tenth of a step of 8 bits
- *       bits 27 to 31  limit of the history weight, in samples: bits 21 to 25 of the float, which is
- *                      5/32 to 28; 0: no history
+ *   x   bits 0 to 26   lower limit of the history's red, green and blue, 9 bits each,
+ *                      display-linear: bits 18 to 26 of the float, which is 2^-15 to 1, rounded
+ *                      down. Black is 2^-15, a tenth of a step of 8 bits
+ *       bits 27 to 31  limit of the history weight, in samples: bits 21 to 25 of the float, which
+ *                      is 5/32 to 28; 0: no history
  *   y   bits 0 to 26   upper limit, in the same form, rounded up
  *       bits 27 to 31  velocity that leads to the history. 0: of this texel; 31: none (same
  *                      position); 30: stored in this value (thin surface, below); else of another
@@ -45,8 +45,10 @@ uint masu_found_color(vec3 light, uint up)
  * display-linear, 0 to 1. */
 uvec2 masu_found(uint way, float count, vec3 least, vec3 most)
 {
-    uint level = (floatBitsToUint(clamp(count, 0.15625, masu_found_most)) - 0x3E000000u + 0x100000u) >> 21;
-    return uvec2(masu_found_color(least, 0u) | level << 27, masu_found_color(most, 0x3FFFFu) | way << 27);
+    uint level =
+        (floatBitsToUint(clamp(count, 0.15625, masu_found_most)) - 0x3E000000u + 0x100000u) >> 21;
+    return uvec2(masu_found_color(least, 0u) | level << 27,
+                 masu_found_color(most, 0x3FFFFu) | way << 27);
 }
 
 /* A thin surface, as the lowest 15 bits of its depth in `history_depth` and as the lowest of

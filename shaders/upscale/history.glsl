@@ -18,8 +18,10 @@
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D found_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 3) uniform sampler2DArray history_image; /* linear */
-layout(set = MASU_SET_PASS, binding = 4, rg32ui) uniform writeonly uimage2DArray kept_image; /* history, other layer */
-layout(set = MASU_SET_PASS, binding = 5, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
+/* history, other layer */
+layout(set = MASU_SET_PASS, binding = 4, rg32ui) uniform writeonly uimage2DArray kept_image;
+layout(set = MASU_SET_PASS, binding = 5, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE target;
 
 const float masu_sharpen = 0.05; /* of moving pixels while the camera is stationary */
 
@@ -29,16 +31,16 @@ struct masu_past {
     vec3 curve; /* second difference of the colour, one pixel apart */
 };
 
-/* Catmull-Rom interpolation without its mixed term: the bilinear value minus a multiple of the
- * second difference of bilinear values one texel apart. */
-masu_past masu_history_at(vec2 place)
+/* The history at a position of the output. moves: between pixels, else at the centre of one.
+ *
+ * Catmull-Rom interpolation without its mixed term: the bilinear value minus a multiple of the
+ * second difference of bilinear values one texel apart. At a centre the multiple is 0. */
+masu_past masu_history_at(vec2 place, bool moves)
 {
     vec2 inside = place, end = vec2(pc.output_width, pc.output_height) - 0.5;
     if (!masu_fixed_output) { /* masu_resize: the image may be larger than the output */
         inside = clamp(place, vec2(0.5), end);
     }
-    vec2 t = fract(inside - 0.5);
-    vec2 bent = t * (0.5 - 0.5 * t);
     vec3 uv = vec3(inside * vec2(push.old_x, push.old_y), masu_layer_before());
     vec4 here = textureLod(history_image, uv, 0.0);
     vec3 beside = textureLodOffset(history_image, uv, 0.0, ivec2(-1, 0)).rgb +
@@ -50,7 +52,11 @@ masu_past masu_history_at(vec2 place)
         above = inside.y > end.y - 1.0 ? 2.0 * here.rgb : above;
     }
     vec3 curve = 4.0 * here.rgb - beside - above;
-    here.rgb += 2.0 * (bent.x + bent.y) * here.rgb - bent.x * beside - bent.y * above;
+    if (moves) {
+        vec2 t = fract(inside - 0.5);
+        vec2 bent = t * (0.5 - 0.5 * t);
+        here.rgb += 2.0 * (bent.x + bent.y) * here.rgb - bent.x * beside - bent.y * above;
+    }
     return masu_past(here, curve);
 }
 
@@ -74,20 +80,21 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
          * sixth more of this pass by Intel's estimate. Texels outside of the image must not be
          * read, even with a weight of 0, since they may be NaN. */
         vec2 beside = min(vec2(texel + masu_found_beside(found)), vec2(push.last_x, push.last_y));
-        vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) * vec2(push.moved_x, push.moved_y);
+        vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) *
+                  vec2(push.moved_x, push.moved_y);
         vec2 moved = textureLod(velocity_image, uv, 0.0).xy + frame.shifts.zw;
         if (masu_is_missed(found)) {
             moved = masu_thin_motion(masu_thin_of(found));
         }
         before += moved * steps;
     }
-    masu_past old = masu_history_at(before);
+    masu_past old = masu_history_at(before, !stays);
     float count = masu_mean_count(old.mean);
     /* Undefined content would remain visible for many frames. It shows as more samples than a frame
      * stores, as NaN, or as more light than the cubic filter makes of 0..1 (the last two cannot
      * occur in unorm images): the pixel starts over. */
     bool stored = count <= masu_mean_most;
-    if (masu_half_means && !(stored && abs(old.mean.r) + abs(old.mean.g) + abs(old.mean.b) <= 6.0)) {
+    if (masu_half_means && !(stored && dot(abs(old.mean.rgb), vec3(1.0)) <= 6.0)) {
         stored = false;
         old.mean.rgb = old.curve = vec3(0.0);
     }
@@ -113,7 +120,8 @@ void masu_show(ivec2 at, vec3 light, float count, masu_past old, bool stays, uin
 {
     light = clamp(light, 0.0, 1.0);
     float moving = (frame.temporal.z & MASU_TEMPORAL_MOVES) != 0u ? push.moving : masu_sharpen;
-    vec3 sharp = light + (stays ? push.calm : moving) * old.mean.a * (1.0 / max(count, 1.0)) * old.curve;
+    vec3 sharp = light +
+                 (stays ? push.calm : moving) * old.mean.a * (1.0 / max(count, 1.0)) * old.curve;
 #if defined(MASU_TEN) || defined(MASU_DEEP) /* the store does not clamp */
     sharp = clamp(sharp, 0.0, 1.0);
 #endif

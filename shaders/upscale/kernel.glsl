@@ -60,9 +60,9 @@ struct masu_sums {
 
 #ifdef MASU_HALF
 
-/* Adds taps at (x.x, y.x) and (x.y, y.y). The weight is a polynomial stand-in for a windowed sinc, of the
- * squared distance d in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is (d (d - 5) + 4) / 4, and
- * of weights that are divided by their sum a fourth is as good as all. */
+/* Adds taps at (x.x, y.x) and (x.y, y.y). The weight is a polynomial stand-in for a windowed sinc,
+ * of the squared distance d in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is (d (d -
+ * 5) + 4) / 4, and of weights that are divided by their sum a fourth is as good as all. */
 void add_pair(inout masu_sums sum, real2 x, real2 y, real lobe, real2 clip, vec3 left, vec3 right)
 {
     real2 distance = min(x * x + y * y, clip);
@@ -79,8 +79,8 @@ vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
 {
     real lobe = real(k.lobe);
     real2 clip = real2(k.clip);
-    /* A step to the right and one down in the kernel's axes; from there to each tap: x holds the x of taps f
-     * and g, y their y. */
+    /* A step to the right and one down in the kernel's axes; from there to each tap: x holds the x
+     * of taps f and g, y their y. */
     real2 right_step = real2(vec2(k.dir.x, -k.dir.y) * k.scale);
     real2 down = real2(vec2(k.dir.y, k.dir.x) * k.scale);
     real2 f = -real(p.x) * right_step - real(p.y) * down;
@@ -100,10 +100,12 @@ vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
 
 #else
 
-/* Adds two taps. The weight is a polynomial stand-in for a windowed sinc, of the squared distance d in the kernel's
- * own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is ((d - 5/2)^2 - 9/4) / 4, and of weights that are divided by their
- * sum a fourth is as good as all. distance: d - 5/2; window: lobe 5/2 - 1. */
-void add_pair(inout masu_sums sum, vec2 distance, float lobe, float window, float clip, vec3 left, vec3 right)
+/* Adds two taps. The weight is a polynomial stand-in for a windowed sinc, of the squared distance d
+ * in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is ((d - 5/2)^2 - 9/4) / 4, and of
+ * weights that are divided by their sum a fourth is as good as all. distance: d - 5/2; window: lobe
+ * 5/2 - 1. */
+void add_pair(inout masu_sums sum, vec2 distance, float lobe, float window, float clip, vec3 left,
+              vec3 right)
 {
     distance = min(distance, vec2(clip));
     vec2 base = distance * distance - 2.25;
@@ -115,8 +117,8 @@ void add_pair(inout masu_sums sum, vec2 distance, float lobe, float window, floa
     ADD(sum.w, 1.0, 1.0, weight);
 }
 
-/* The squared distance of taps at whole steps is a x^2 + 2 b x y + c y^2 - 2 (d x + e y) + f: a number for each column,
- * one for each row, and what both have together. */
+/* The squared distance of taps at whole steps is a x^2 + 2 b x y + c y^2 - 2 (d x + e y) + f: a
+ * number for each column, one for each row, and what both have together. */
 vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
 {
     vec2 square = k.scale * k.scale;
@@ -135,7 +137,8 @@ vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
     add_pair(sum, vec2(above, above + right - both), k.lobe, window, clip, t.b, t.c);
     add_pair(sum, vec2(f + left, f + far_right), k.lobe, window, clip, t.e, t.h);
     add_pair(sum, vec2(f, f + right), k.lobe, window, clip, t.f, t.g);
-    add_pair(sum, vec2(below + left - both, below + far_right + 2.0 * both), k.lobe, window, clip, t.i, t.l);
+    add_pair(sum, vec2(below + left - both, below + far_right + 2.0 * both), k.lobe, window, clip,
+             t.i, t.l);
     add_pair(sum, vec2(below, below + right + both), k.lobe, window, clip, t.j, t.k);
     add_pair(sum, vec2(far_below, far_below + right + 2.0 * both), k.lobe, window, clip, t.n, t.o);
     vec3 sums = vec3(sum.r, sum.g, sum.b);

@@ -3,13 +3,14 @@
  *
  *   pc.x 0: f * N.L * pi of each case; the three factors of ambient light
  *        1: the white furnace: f * N.L over all l
+ *        2: as 0, of a bsdf that was kept as half floats
  *   pc.y    number of cases
  *   pc.z    steps per angle of the furnace */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OWN_COATS
 #define MASU_SURFACE
-#include "brdf/bsdf.glsl"
+#include "brdf/shelf.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -123,7 +124,10 @@ void main()
     s.coat_roughness = c.surface.w;
     s.lean = vec2(c.normal.w, c.view.w);
     masu_bsdf b = masu_bsdf_make(s, c.normal.xyz, c.view.xyz);
-    vec3 light = pc.x == 0u ? masu_bsdf_eval(b, c.light.xyz)
+    if (pc.x == 2u) {
+        masu_unshelve(masu_shelve(b), b);
+    }
+    vec3 light = pc.x != 1u ? masu_bsdf_eval(b, c.light.xyz)
                             : furnace(b, c.view.xyz, masu_alpha(c.surface.w), pc.z);
     results[at].light = vec4(light, 0.0);
     results[at].diffuse = vec4(masu_bsdf_diffuse(b), 0.0);

@@ -171,6 +171,32 @@ static void coats_may_lean(void **unused) {
     assert_true(beneath > 100);
 }
 
+/* Half floats: at most two of their steps, also of grazing light, little of which is diffuse. */
+static void half_floats_keep_grazing_light(void **unused) {
+    (void)unused;
+    static test_result exact[MANY];
+    for (int i = 0; i < MANY; i++) {
+        cases[i] = any_case();
+        if (i & 1) cases[i].coat = 0;
+    }
+    run(cases, exact, MANY, 0, 0);
+    run(cases, results, MANY, 2, 0);
+    double worst[2] = {0, 0};
+    uint32_t differ = 0;
+    for (int i = 0; i < MANY; i++) {
+        const float *a = exact[i].light, *b = results[i].light;
+        double value = (double)fmaxf(a[0], fmaxf(a[1], a[2])) + 1e-3 * (double)cases[i].light[2];
+        for (int k = 0; k < 3; k++) {
+            double off = fabs((double)a[k] - (double)b[k]) / value;
+            worst[cases[i].coat > 0] = worst_of(worst[cases[i].coat > 0], off);
+            differ += a[k] != b[k];
+        }
+    }
+    print_message("  half floats: error of %.1e at most, %.1e with a coat\n", worst[0], worst[1]);
+    assert_true(differ > MANY); /* they are used */
+    assert_true(worst[0] < 1e-3 && worst[1] < 8e-3);
+}
+
 static void light_and_view_may_be_exchanged(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) {
@@ -383,6 +409,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces_are_those_of_the_reference),
         cmocka_unit_test(coats_may_lean),
+        cmocka_unit_test(half_floats_keep_grazing_light),
         cmocka_unit_test(light_and_view_may_be_exchanged),
         cmocka_unit_test(in_the_white_furnace_no_light_is_lost_or_made),
         cmocka_unit_test(any_bits_give_finite_light),

@@ -14,7 +14,10 @@ static double alpha_of(double roughness) {
     double r = roughness > MASU_TABLE_SMOOTHEST ? roughness : MASU_TABLE_SMOOTHEST;
     return r * r;
 }
-static double power5(double cosine) { return pow(1 - unit_range(cosine), 5); }
+static double power5(double cosine) {
+    double x = 1 - unit_range(cosine);
+    return x * x * (x * x) * x;
+}
 
 static double lambda(double alpha, double mu) {
     double tangent2 = (1 - mu * mu) / (mu * mu);
@@ -245,7 +248,8 @@ void brdf_furnace(const uint32_t *words, const brdf_surface *s, double mu, int s
     for (int i = 0; i < steps; i++) {
         for (int k = 0; k < steps; k++) {
             sample base = sample_of(alpha_of(s->roughness), mu, i, k, steps);
-            sample coat = sample_of(alpha_of(s->coat_roughness), mu, i, k, steps);
+            sample coat = {0, 0, 0};
+            if (s->coat > 0) coat = sample_of(alpha_of(s->coat_roughness), mu, i, k, steps);
             for (int c = 0; c < 3 && base.weight > 0; c++)
                 out[c] += base.weight * fresnel(&m, c, base.v_h) * through(&m, mu, base.n_l);
             for (int c = 0; c < 3; c++)
@@ -257,11 +261,12 @@ void brdf_furnace(const uint32_t *words, const brdf_surface *s, double mu, int s
     const int rings = 1024;
     for (int i = 0; i < rings; i++) {
         double x = (i + 0.5) / rings;
-        returned to = returned_of(&m, pow(x, 4));
+        double x3 = x * x * x;
+        returned to = returned_of(&m, x3 * x);
         for (int c = 0; c < 3; c++) {
             double rest, diffuse;
             broad_factors(&m, from, c, &rest, &diffuse);
-            out[c] += (rest * to.lost + diffuse * (1 - matte(&m, to))) * 8 * pow(x, 7) / rings;
+            out[c] += (rest * to.lost + diffuse * (1 - matte(&m, to))) * 8 * x3 * x3 * x / rings;
         }
     }
 }

@@ -96,7 +96,8 @@ refuses 1 'cannot read .*empty.glb' "$folder/empty.glb" "${x[@]}"
 refuses 1 'empty.json:1:' "$folder/empty.json" "${x[@]}"
 head -c 3000 /dev/urandom > "$folder/noise.glb"
 refuses 1 'cannot read .*noise.glb' "$folder/noise.glb" "${x[@]}"
-plain=tests/scenes/test_sphere_mesh.json # without an SDF, which takes two seconds to compile
+plain=$folder/plain.json # without an SDF, which takes two seconds to compile
+echo '{"models": [{"mesh": {"sphere": {"subdivisions": 0}}}]}' > "$plain"
 refuses 1 '/nowhere/x.masu: cannot write: No such file' $plain -o /nowhere/x.masu
 refuses 1 "$folder/out: cannot write: it is a directory" $plain -o "$folder/out"
 refuses 1 'cannot write /dev/full: No space' $plain -o /dev/full
@@ -465,12 +466,14 @@ refuses 1 'scene.json: --variant needs a model' "$json" "${x[@]}" --variant azur
     done
 } > "$folder/sky.hdr"
 scene '{"environment": {"file": "sky.hdr", "rotate": 30}, "models": [{"file": "paint.gltf"}]}'
-accepts "$json" -o "$folder/turned.masu" --quiet
 accepts "$json" -o "$folder/more.masu" --turn 20 --quiet
-scene '{"environment": {"file": "sky.hdr", "rotate": 10}, "models": [{"file": "paint.gltf"}]}'
-accepts "$json" -o "$folder/less.masu" --turn 20 --quiet
-cmp -s "$folder/turned.masu" "$folder/less.masu" || fail "--turn 20 is not added to the 10 degrees of the scene"
-cmp -s "$folder/turned.masu" "$folder/more.masu" && fail "--turn changes nothing"
+if [ "${NESTED:-}" = '' ]; then # with the sanitizers, one such bake goes through the same code
+    accepts "$json" -o "$folder/turned.masu" --quiet
+    scene '{"environment": {"file": "sky.hdr", "rotate": 10}, "models": [{"file": "paint.gltf"}]}'
+    accepts "$json" -o "$folder/less.masu" --turn 20 --quiet
+    cmp -s "$folder/turned.masu" "$folder/less.masu" || fail "--turn 20 is not added to the 10 degrees of the scene"
+    cmp -s "$folder/turned.masu" "$folder/more.masu" && fail "--turn changes nothing"
+fi
 refuses 2 'turn.*400' "$json" "${x[@]}" --turn 400
 
 [ $failures = 0 ] && echo "masu-bake: all as expected, $tried models tried"

@@ -134,6 +134,16 @@ printf '#version 440\n' > "$folder/version/b.frag"
 expect 1 newer_versions "$folder/version"
 expect_none 'compute and fragment shaders are of version 440 (shaders/shaders.mk)' newer_versions shaders
 
+# Rows of tables (*.inc, and of ladder_devices.h, which is generated) may be longer.
+wide_lines() {
+    find "$@" -type f \( -name '*.[ch]' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' \) \
+        ! -name ladder_devices.h -exec awk 'length > 100 { print FILENAME ":" FNR ": " length " columns" }' {} +
+}
+mkdir "$folder/wide"
+printf '%100s\n%101s\n' a b > "$folder/wide/a.c"
+expect 1 wide_lines "$folder/wide"
+expect_none 'lines have at most 100 columns' wide_lines include src shaders platform examples
+
 expect_none 'images are stored through the macros of shaders/shared/store.glsl alone' stores shaders
 expect_none 'these are called through shaders/shared/guard.glsl alone' raw_functions shaders
 
