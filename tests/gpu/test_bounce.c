@@ -35,7 +35,7 @@ static void open_rooms_at(rooms *r, const char *path) {
     size_t bytes;
     masu_scene bound;
     d.desc.rung_count = 1;
-    /* The sun is dark or below the floor. */
+    /* No test here looks at shadows of the sun. */
     d.desc.rungs[0] = (masu_rung){.scale = 1.0f, .shadow_resolution = 16};
     d.desc.readback = MASU_READBACK_HDR;
     d.scene_path = path;
