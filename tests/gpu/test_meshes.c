@@ -316,7 +316,7 @@ static double cpu_ms(void) { return 1e3 * (double)clock() / CLOCKS_PER_SEC; }
 
 static void slots_are_reused(void **state) {
     (void)state;
-    enum { KINDS = 2, SLOTS = 3, CHANGES = 1000 };
+    enum { KINDS = 2, SLOTS = 3, CHANGES = 600 };
     const given *of[KINDS] = {&ball, &block};
     masu_session s;
     masu_model mesh[KINDS][SLOTS] = {{{0}}}, gone = {0};

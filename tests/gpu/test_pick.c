@@ -230,12 +230,12 @@ static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, do
     return t;
 }
 
-/* On drivers after the first, without reflections, which take most of a frame and are not
- * picked. */
+/* Reflections take most of a frame and are not picked: only the second rung has them, on the first
+ * driver. */
 static void set_rungs(masu_session_desc *d) {
     masu_switch specular = whole_run() ? MASU_AUTO : MASU_OFF;
     d->desc.rung_count = 2;
-    d->desc.rungs[0] = (masu_rung){.scale = 1, .specular = specular};
+    d->desc.rungs[0] = (masu_rung){.scale = 1, .specular = MASU_OFF};
     d->desc.rungs[1] = (masu_rung){.scale = 0.5f, .specular = specular};
 }
 

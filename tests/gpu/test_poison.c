@@ -250,10 +250,10 @@ static void inputs_of_temporal_passes(void **state) {
     halves = 0;
 }
 
-/* More parts than bits: tiles have lists of part numbers. */
+/* More parts than bits: tiles have lists of part numbers. A step evaluates up to 300 parts. */
 static void inputs_of_lists_of_parts(void **state) {
     (void)state;
-    poison_each("parts300", &(masu_rung){.scale = 1.0f}, 0, 1);
+    poison_each("parts300", &(masu_rung){.scale = 1.0f, .march_steps = 16}, 0, 1);
 }
 
 static void inputs_of_upscaling_and_smaa(void **state) {

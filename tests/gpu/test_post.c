@@ -2,6 +2,7 @@
  * at every resolution; depth of field is compared with the mean of many off-centre cameras on the lens; colour tables
  * and curves are compared with their formulas. */
 #include "reference/tone.h"
+#include "support/files.h"
 #include "support/floats.h"
 #include "support/random.h"
 #include "support/support.h"
@@ -198,7 +199,7 @@ static void bloom_has_the_same_width_at_every_resolution(void **state) {
 
 /* ---- Depth of field -------------------------------------------------------------------------- */
 
-enum { DW = 320, DH = 180, LENS = 96 };
+enum { DW = 320, DH = 180, LENS = 48 };
 static float sharp[3 * DW * DH], blurred[3 * DW * DH], lens[3 * DW * DH], one[3 * DW * DH];
 static float depth[DW * DH];
 
@@ -217,7 +218,7 @@ static void jitter(masu_camera *c, int k) {
 
 /* The mean over positions in the pixel. */
 static void draw_positions(const masu_camera *camera, const masu_post *post, float *mean) {
-    enum { POSITIONS = 16 };
+    enum { POSITIONS = 8 };
     memset(mean, 0, sizeof lens);
     for (int k = 0; k < POSITIONS; k++) {
         masu_camera c = *camera;
@@ -264,6 +265,7 @@ static void depth_of_field_is_near_the_mean_over_a_lens(void **state) {
         {"test_both", {.aperture = 0.1f, .focus = 6.0f}, 0.7},
         {"test_town", {.aperture = 0.5f, .focus = 12.0f}, 0.35}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        if (i % 2 == 0 && !whole_run()) continue; /* other drivers: each scene once */
         masu_session_desc d = linear_desc(cases[i].scene, DW, DH, MASU_POST_FOCUS);
         open_session(&s, &d);
         masu_camera camera;

@@ -24,7 +24,7 @@ static void march(const char *scene, int all_terms, masu_switch share, float sca
     masu_session_desc d = test_desc(scene, W, H);
     d.desc.readback = MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL | MASU_READBACK_DEPTH;
     d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = scale, .silhouettes = MASU_ON};
+    d.desc.rungs[0] = (masu_rung){.scale = scale, .silhouettes = MASU_ON, .specular = MASU_OFF};
     /* A tile here may evaluate all of 300 parts, and for silhouettes an invocation marches three
      * rays: Mesa 22.3 ends loops after 65,535 iterations in all. */
     if (!strcmp(scene, "parts300")) d.desc.rungs[0].march_steps = 48;
