@@ -220,7 +220,7 @@ typedef enum masu_knob_use {
            "More pixels trace rays with a higher cutoff.")                                         \
     NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
            "Length of the temporal accumulation of reflections, in frames of 1/60 s. 0: 32, or 8"  \
-           " with temporal, which accumulates too.",                                               \
+           " with temporal.",                                                                      \
            "None.")                                                                                \
     /* Live bounce of diffuse light, by irradiance probes. */                                      \
     WORD(  masu_switch,      bounce,               MASU_AUTO,      BOUNCE,                         \
