@@ -311,7 +311,7 @@ typedef struct masu_rung {
      * rays; between 3/4 of it and it, both are blended. 0: the scene's. Range 0..1. */
     float specular_cutoff;
     /* Length of the temporal accumulation of reflections, in frames of 1/60 s. 0: 32, or 8 with
-     * temporal, which accumulates too. Range 1..240 frames; 0: 32. */
+     * temporal. Range 1..240 frames; 0: 32. */
     uint32_t specular_frames;
     /* Live bounce: rays of some probes per frame. OFF: probes keep what they have. AUTO: on if
      * the device allows enough storage buffers. */
