@@ -89,8 +89,6 @@ $(BUILD)/obj/lab/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I.
 # So that sums are the same with any machine flags.
 $(BUILD)/obj/lab/reference/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I. -ffp-contract=off
 $(BUILD)/obj/lab/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG -O1 -I.
-# What of the library has to be compiled again takes longer to compile than it runs.
-$(BUILD)/obj/src/%.o: FOLDER_FLAGS := -fPIC -fvisibility=hidden -O1
 
 # Shaders that only the lab uses, as C (shaders/shaders.mk).
 LAB_SPIRV := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' lab)))
