@@ -191,7 +191,7 @@ typedef enum masu_knob_use {
            "More instances in the cascades with a larger distance.")                               \
     NUMBER(masu_per_cascade, shadow_refresh,       1,    64,   1,    SHADOWS,   "frames",          \
            "Interval at which each cascade is re-rendered; also after a cut, and when the view"    \
-           " has moved out of the cascade. In between, shadows of moving objects lag behind.",     \
+           " has moved out of the cascade. In between, moving shadows lag.",                       \
            "Saves draws. A value above 1 keeps the shadow map from sharing memory with other"      \
            " images; each cascade with one doubles the number of recordings of the rung.")         \
     /* Shadows of punctual lights: a cache of faces in one atlas. */                               \
@@ -200,7 +200,7 @@ typedef enum masu_knob_use {
            "Per pixel and shadowed light up to 200 instructions; the faces that are rendered.")    \
     NUMBER(uint32_t,         local_shadow_atlas,   128,  4096, 2048, LOCAL_SHADOWS, "texels",      \
            "Largest width and height of the atlas of shadow faces, rounded down to a power of two;"\
-           " smaller if few lights cast shadows. All rungs share the largest.",                    \
+           " smaller for few shadows. All rungs share the largest.",                               \
            "2 n^2 persistent device bytes.")                                                       \
     NUMBER(uint32_t,         local_shadow_lights,  1,    64,   16,   LOCAL_SHADOWS, "",            \
            "Largest number of punctual lights with shadows at a time, the most important ones.",   \
@@ -289,14 +289,12 @@ typedef struct masu_rung {
     /* View depth at which shadows end. 0: the scene's. Range 0..1000000000 m. */
     float shadow_distance;
     /* Interval at which each cascade is re-rendered; also after a cut, and when the view has
-     * moved out of the cascade. In between, shadows of moving objects lag behind. Range 1..64
-     * frames; 0: 1. */
+     * moved out of the cascade. In between, moving shadows lag. Range 1..64 frames; 0: 1. */
     masu_per_cascade shadow_refresh;
     /* Shadows of punctual lights. AUTO: on. */
     masu_switch local_shadows;
     /* Largest width and height of the atlas of shadow faces, rounded down to a power of two;
-     * smaller if few lights cast shadows. All rungs share the largest. Range 128..4096 texels;
-     * 0: 2048. */
+     * smaller for few shadows. All rungs share the largest. Range 128..4096 texels; 0: 2048. */
     uint32_t local_shadow_atlas;
     /* Largest number of punctual lights with shadows at a time, the most important ones. Range
      * 1..64; 0: 16. */

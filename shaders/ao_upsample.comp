@@ -70,7 +70,7 @@ void load_texels(ao_lens lens, uvec2 last)
     for (int i = 0; i < (EDGE * EDGE + MASU_GROUP * MASU_GROUP - 1) / (MASU_GROUP * MASU_GROUP);
          i++) {
         int n = i * MASU_GROUP * MASU_GROUP + int(gl_LocalInvocationIndex);
-        int row = n * (65536 / EDGE + 1) >> 16; /* n / EDGE */
+        int row = n * (65536 / EDGE + 1) >> 16; /* n / EDGE, exact for these n */
         ivec2 from = first + ivec2(n - row * EDGE, row);
         if (n < EDGE * EDGE) {
             bool inside = all(greaterThanEqual(from, ivec2(0))) &&
@@ -157,7 +157,7 @@ void main()
         uint corner = gl_LocalInvocationID.y * EDGE + gl_LocalInvocationID.x;
         float least = 1.0;
         float most = 0.0;
-        float lowest = 1.0; /* -1 if one is missing, which `least` takes as unoccluded */
+        float lowest = 1.0; /* -1 if a texel is missing; `least` takes that one as 1 */
         float sum = 0.0;
         for (int i = 0; i < 16; i++) {
             float seen = texels[corner + uint((i >> 2) * EDGE + (i & 3))].w;

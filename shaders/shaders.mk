@@ -136,7 +136,7 @@ $(BUILD)/classes/%/packed.h: $(MADE)/tools/pack_spirv $(PACKED:%=$(MADE)/gen/%.o
 	$(V)$< $(MADE)/gen $(call pack_for,$*) > $@
 $(BUILD)/classes/%/shaders.o: src/device/shaders.c $(BUILD)/classes/%/packed.h $(MADE)/gen/permutations.h
 	$(V)$(CC) -I$(@D) $(ALL_FLAGS) -fPIC -fvisibility=hidden -c $< -o $@
-# Classes that leave out the same permutations have the same object: that of the first of them, or of the library.
+# Classes that omit the same permutations share one object: that of the first of them, or the library's.
 alike = $(firstword $(foreach c,$(ALL_CLASSES),$(if $(call differ,$(call parts_of,$(1)),$(call parts_of,$c)),,$c)))
 differ = $(filter-out $(1),$(2))$(filter-out $(2),$(1))
 object_like = $(if $(call differ,$(call parts_of,$(1)),$(call parts_of,$(CLASSES))),$(if $(filter-out \

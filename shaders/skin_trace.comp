@@ -71,7 +71,7 @@ uvec3 exponents_of(vec3 extent)
     return clamp(e, uvec3(1u), uvec3(170u));
 }
 
-/* The boxes of four children. They rotate, since GPUs put an indexed array into memory. */
+/* The boxes of four children. They are rotated: a variable index would put an array into memory. */
 struct masu_boxes {
     masu_box first, second, third, last;
 };

@@ -291,7 +291,7 @@ void main()
             vec2 size = vec2(pc.render_width, pc.render_height);
             uvec2 pixel = masu_guide_place(texel, h.g.pixel, 2u);
             h.width = masu_texel_width(h.g);
-            /* as above */
+            /* precise, as above */
             precise vec2 shift = (previous.jitter.zw - frame.jitter.zw) * (0.5 * size);
             h.shift = shift;
             present now = gather(h, masu_specular_point(texel, h.g));

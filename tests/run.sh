@@ -17,8 +17,8 @@
 # LONG=1                   tests that try many of a kind try all, and tests of programs run on all drivers;
 #                          CI does not
 # NESTED=1                 the tests are those of the tree built anew: what takes long does a part
-# MASU_TEST_JOBS=N         programs at a time; one more than there are processors unless told: most of a program's
-#                          time one thread works, and a tenth of it none does
+# MASU_TEST_JOBS=N         programs at a time; default: processors + 1, because a program mostly runs one thread and
+#                          is idle for a tenth of its time
 #
 # A test runs in the root of the tree and sees BUILD, MADE, MASU_EXPECT_DIR and, with a driver,
 # MASU_TEST_DRIVER, MASU_DRIVER_INFO (one line: name and version), VK_DRIVER_FILES.

@@ -1,5 +1,6 @@
 /*
- * shelf.glsl: a bsdf's colours as half floats, while the code between needs their registers.
+ * shelf.glsl: packs the colours of a bsdf as half floats, to free registers while shadows and
+ * lights are looked up.
  */
 #ifndef MASU_SHELF_GLSL
 #define MASU_SHELF_GLSL
@@ -30,8 +31,8 @@ masu_shelved_bsdf masu_shelve(masu_bsdf b)
     p.f0 = masu_pack_halves(vec4(b.f0, b.f90));
     p.rest = masu_pack_halves(vec4(b.rest, b.seen.white));
     p.diffuse = masu_pack_halves(vec4(b.diffuse, b.seen.weight));
-    /* f90, mostly 1, instead of f90 - f0: for grazing light little more than its rounding remains
-     * below the specular reflection, an error of 3.6 % of diffuse light. */
+    /* f90, which is usually exactly 1, instead of f90 - f0: at grazing angles 1 - Fresnel is near
+     * 0, and the rounding of f90 - f0 would change diffuse light by 3.6 %. */
     p.matte = masu_pack_halves(vec4(b.matte_f0, b.matte_f0 + b.matte_slope, b.matte_rest, 0.0));
 #ifdef MASU_SURFACE
     p.matte.y = packHalf2x16(vec2(b.matte_rest, b.coat));

@@ -3,8 +3,8 @@
  * up to a start distance. The optical depth along a straight ray has a closed form (Lengyel,
  * "Unified Distance Formulas for Halfspace Fog", JGT 12-2, 2007, for linear density):
  *
- *   depth = density(lower end) * length * mean(falloff * |climb| * length),  mean(x) = (1 - e^-x) /
- *                                                                            x
+ *   depth = density(lower end) * length * mean(falloff * |climb| * length)
+ *   mean(x) = (1 - e^-x) / x
  *
  * Evaluated from the lower end upwards in either direction: from the camera, a descending ray would
  * be a small number times one that overflows. mean(x) is a series where 1 - e^-x cancels, so the

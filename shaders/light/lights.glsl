@@ -271,7 +271,7 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     /* Recomputed, in another form so that the compiler does not merge them: kept alive, they would
      * take six registers during the atlas reads. */
     if (masu_few_registers) {
-        /* the same, for compilers another */
+        /* the same light; compilers must not see that */
         light = masu_lights[min(number, masu_light_count() - 1u)];
     }
     to = -(rel - light.position.xyz);

@@ -1,8 +1,8 @@
 /*
  * focus.glsl: circles of confusion of a thin lens. A lens of diameter A whose sharp plane is at
- * view z f shows a point at z as a disc of diameter A |1 - f / z| on that plane, which is 2 f
- * tan(fov_y / 2) high: the radius is linear in the stored depth, near / z. Below 0 in front of the
- * sharp plane.
+ * view z f shows a point at z as a disc of diameter A |1 - f / z| on that plane, which is
+ * 2 f tan(fov_y / 2) high: the radius is linear in the stored depth, near / z. Below 0 in front
+ * of the sharp plane.
  */
 #ifndef MASU_FOCUS_GLSL
 #define MASU_FOCUS_GLSL

@@ -9,7 +9,7 @@
 #include <float.h>
 
 #if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
-#error "floats are computed in more digits than they have: on x86 compile with -mfpmath=sse -msse2"
+#error "floats have excess precision: on 32-bit x86 compile with -mfpmath=sse -msse2"
 #endif
 
 #endif

@@ -137,8 +137,7 @@ float masu_sample_maps(vec2 at, float live, inout masu_surface s)
 
 /* A relief is seen where it faces the viewer. Normals that point away, which near a silhouette some
  * of any map do, would shine there as if seen edge-on; they are turned until they are all but
- * edge-on. Not renormalised.
- */
+ * edge-on. Not renormalised. */
 vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
 {
     float least = (MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u ? 0.0 : 0.1;

@@ -16,7 +16,7 @@
 #define MASU_MAP_OCCLUSION 16u
 #define MASU_MAP_COAT 32u
 #define MASU_MAP_ADDITIVE 0x10000u
-#define MASU_MAP_FAR_SIDE_FIRST 32u /* transparent, without coat map: back faces are drawn first */
+#define MASU_MAP_FAR_SIDE_FIRST 32u      /* transparent, no coat map: drawn twice, far side first */
 #define MASU_MAP_TRANSMISSION 0x20000u   /* alpha of the base colour is transmission */
 #define MASU_MAP_LOBE 0x10000u           /* opaque: the coat's map is the lobe's */
 #define MASU_MAP_COAT_RELIEF 0x100000u   /* opaque: the map of emission has the coat's normals */

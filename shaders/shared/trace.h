@@ -25,7 +25,7 @@
 /* Material of a triangle: index and flags. */
 #define MASU_TRACE_NONE 0xFFFFFFFFu
 #define MASU_TRACE_HOLES 0x80000000u  /* alpha-tested */
-#define MASU_TRACE_SECOND 0x10u       /* of wrap modes: emission has the second coordinates */
+#define MASU_TRACE_SECOND 0x10u       /* in wrap modes: emission uses the second UVs */
 #define MASU_TRACE_SINGLE 0x40000000u /* single-sided: missed from behind */
 #define MASU_TRACE_MATERIAL 0x3FFFFFFFu
 #define MASU_TRACE_NOISE_WORDS 4096u

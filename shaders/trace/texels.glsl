@@ -128,7 +128,7 @@ bool masu_trace_there(uvec4 about, vec2 b)
     uint at = masu_trace_static[masu_trace_static[0].w].x + 4u * (about.w & MASU_TRACE_MATERIAL);
     uvec4 maps = masu_trace_static[at + 3u];
     float alpha = masu_trace_picture(maps.x, masu_trace_uv(about.xyz, b), 0.0, maps.w).a;
-    /* shared/maps.glsl */
+    /* as in shared/maps.glsl */
     return alpha >= float(maps.z >> MASU_MAP_CUTOFF_SHIFT & 255u) * (0.999999 / 255.0);
 }
 #endif

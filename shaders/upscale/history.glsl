@@ -94,7 +94,8 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
      * stores, as NaN, or as more light than the cubic filter makes of 0..1 (the last two cannot
      * occur in unorm images): the pixel starts over. */
     bool stored = count <= masu_mean_most;
-    if (masu_half_means && !(stored && dot(abs(old.mean.rgb), vec3(1.0)) <= 6.0)) {
+    vec3 light = abs(old.mean.rgb) + 1e-3 * abs(old.curve); /* neighbours may be undefined, too */
+    if (masu_half_means && !(stored && dot(light, vec3(1.0)) <= 6.1)) {
         stored = false;
         old.mean.rgb = old.curve = vec3(0.0);
     }

@@ -61,8 +61,8 @@ struct masu_sums {
 #ifdef MASU_HALF
 
 /* Adds taps at (x.x, y.x) and (x.y, y.y). The weight is a polynomial stand-in for a windowed sinc,
- * of the squared distance d in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is (d (d -
- * 5) + 4) / 4, and of weights that are divided by their sum a fourth is as good as all. */
+ * of the squared distance d in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is
+ * (d (d - 5) + 4) / 4, and of weights that are divided by their sum a fourth is as good as all. */
 void add_pair(inout masu_sums sum, real2 x, real2 y, real lobe, real2 clip, vec3 left, vec3 right)
 {
     real2 distance = min(x * x + y * y, clip);

@@ -3,7 +3,7 @@
  *
  *   pc.x 0: f * N.L * pi of each case; the three factors of ambient light
  *        1: the white furnace: f * N.L over all l
- *        2: as 0, of a bsdf that was kept as half floats
+ *        2: as 0, after packing the bsdf to half floats
  *   pc.y    number of cases
  *   pc.z    steps per angle of the furnace */
 #version 440

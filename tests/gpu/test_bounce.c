@@ -253,8 +253,9 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
     print_message("%u probes: 90 %% after %u frames, at most %u; largest fall %.4f, most %.4f\n",
                   b->valid, at_90 + 1, bound, fall, most);
     assert_true(final > 0.01 && at_90 + 1 <= bound && fall < 0.01 && most < 1.02);
-    /* Pausing loses nothing: two windows before, each of which traces all sets, have changed no
-     * bit. So the last one is left out. Then nothing is traced. */
+    /* Pausing loses nothing: the last two windows, each of which traces every set, changed no bit.
+     * The test skips the rest of the wait (tests/unit/test_bounce.c has it whole). Then nothing is
+     * traced. */
     assert_true(at_rest == hash_of(&r));
     b->quiet = MASU_BOUNCE_REST - 1;
     (void)settle(&r, MASU_BOUNCE_REST);

@@ -230,8 +230,8 @@ static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, do
     return t;
 }
 
-/* Reflections take most of a frame and are not picked: only the second rung has them, on the first
- * driver. */
+/* Reflections take most of a frame and are not picked: only the second rung has them, and only on
+ * the first driver. */
 static void set_rungs(masu_session_desc *d) {
     masu_switch specular = whole_run() ? MASU_AUTO : MASU_OFF;
     d->desc.rung_count = 2;

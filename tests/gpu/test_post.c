@@ -199,6 +199,7 @@ static void bloom_has_the_same_width_at_every_resolution(void **state) {
 
 /* ---- Depth of field -------------------------------------------------------------------------- */
 
+/* 96 positions in the lens give the same ratios within 0.04. */
 enum { DW = 320, DH = 180, LENS = 48 };
 static float sharp[3 * DW * DH], blurred[3 * DW * DH], lens[3 * DW * DH], one[3 * DW * DH];
 static float depth[DW * DH];

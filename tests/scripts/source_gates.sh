@@ -134,7 +134,7 @@ printf '#version 440\n' > "$folder/version/b.frag"
 expect 1 newer_versions "$folder/version"
 expect_none 'compute and fragment shaders are of version 440 (shaders/shaders.mk)' newer_versions shaders
 
-# Rows of tables (*.inc, and of ladder_devices.h, which is generated) may be longer.
+# Rows of tables may be longer: *.inc, and ladder_devices.h, which is generated.
 wide_lines() {
     find "$@" -type f \( -name '*.[ch]' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' \) \
         ! -name ladder_devices.h -exec awk 'length > 100 { print FILENAME ":" FNR ": " length " columns" }' {} +

@@ -76,7 +76,7 @@ static void some_normal(int i, int count, double out[3]) {
     out[2] = flat * sin(a);
 }
 
-/* Averages over GGX lobes around at most LOOKS normals, each viewed from above, weighted by the cosine. */
+/* Averages over GGX lobes around up to LOOKS normals, viewed along each, weighted by the cosine. */
 static void integrate(const masu_bake_panorama *p, int count, double n[][3], double roughness,
                       double out[][3]) {
     double a2 = pow(roughness, 4), weight[LOOKS] = {0};

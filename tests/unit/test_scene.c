@@ -187,8 +187,8 @@ static void bytes_behind_the_blob_are_refused(void **state) {
 }
 
 /* The hash covers everything after the header; errors in the header's own bits must be detected one
- * by one. After the header of other blobs than the fullest, every seventh bit is tested unless
- * LONG=1; with the sanitizers, of that one too. */
+ * by one. After the header every seventh bit is tested, but all bits of the fullest blob (not with
+ * the sanitizers); with LONG=1 all bits of all blobs. */
 static void a_blob_with_any_bit_flipped_is_refused(void **state) {
     (void)state;
     masu_scene scene;

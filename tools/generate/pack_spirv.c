@@ -417,10 +417,10 @@ static void pack_module(const bytes *tokens, bytes *pool, bytes *runs, module *m
 
 /* ---- The header ------------------------------------------------------------------------------ */
 
-/* As a string, without the zero at its end: compilers take a sixth of the time that they take for a
- * list of numbers. "??" would be read as the start of a trigraph. */
+/* As a string: compilers take a sixth of the time that they take for a list of numbers. "??" would
+ * be read as the start of a trigraph. */
 static void print_bytes(const char *name, const bytes *b) {
-    printf("static const uint8_t %s[%zu] =", name, b->count);
+    printf("static const uint8_t %s[%zu] =", name, b->count + 1);
     for (size_t i = 0; i < b->count; i++) {
         uint8_t c = b->at[i];
         bool plain = c >= ' ' && c <= '~' && c != '"' && c != '\\' && c != '?';
