@@ -39,7 +39,7 @@ jobs=${MASU_TEST_JOBS:-$(($(nproc) + 1))}
 once=" test_bench test_cli test_gpu_av test_mutated test_reference test_soak "
 # Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
 # lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it (frame,
-# fixed_memory, upscale); what SwiftShader runs as well (area_lights, far, faults, output, picture_sky, poison, smaa,
+# fixed_memory, upscale); what SwiftShader runs as well (area_lights, far, output, picture_sky, poison, smaa,
 # stiff, tone, trace, velocity).
 not_lavapipe_25=" test_ao test_area_lights test_bounce test_calls test_devices test_failures test_far test_faults test_fixed_memory "
 not_lavapipe_25+="test_frame test_gltf_pictures test_governor test_governor_host test_host_pass test_ladder test_live "
@@ -49,7 +49,7 @@ not_lavapipe_25+="test_small_lamps test_smaa test_specular_filters test_specular
 not_lavapipe_25+="test_temporal test_terms test_tone test_trace test_truth test_upscale test_velocity test_window "
 # SwiftShader takes four times as long to draw. It leaves out decisions of the host and comparisons of many frames:
 # test_conform draws every pass there, test_poison gives each pass hostile bits, test_stiff marches.
-not_swiftshader=" test_ao test_bounce test_calls test_culling test_devices test_failures test_fixed_memory "
+not_swiftshader=" test_ao test_bounce test_calls test_culling test_devices test_failures test_faults test_fixed_memory "
 not_swiftshader+="test_frame test_gltf_pictures test_governor test_governor_host test_host_pass test_instance_looks test_ladder "
 not_swiftshader+="test_lights test_live test_live_environment test_live_textures test_load test_local_shadows test_lods "
 not_swiftshader+="test_memory_kinds test_meshes "

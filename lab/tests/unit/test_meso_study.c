@@ -25,7 +25,7 @@ static void curves_are_twice_as_near_as_plain_maps(void **state) {
     (void)state;
     static masu_meso_study study;
     for (const char *const *name = masu_meso_made; *name; name++) {
-        if (name - masu_meso_made >= (int)trials(8, 2, 1)) break;
+        if (name - masu_meso_made >= (int)trials(8, 1, 1)) break;
         masu_meso_patch p;
         assert_true(masu_meso_make(*name, 2, 1, &p));
         masu_meso_options options = {
