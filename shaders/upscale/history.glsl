@@ -92,8 +92,8 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
     float count = masu_mean_count(old.mean);
     /* Undefined content would remain visible for many frames. It shows as more samples than a frame
      * stores, as NaN, or as more light than the cubic filter makes of 0..1 (the last two cannot
-     * occur in unorm images): the pixel starts over. Undefined neighbours of a static pixel only affect
-     * the sharpened image, for one frame. */
+     * occur in unorm images): the pixel starts over. Undefined neighbours of a static pixel only
+     * affect the sharpened image, for one frame. */
     bool stored = count <= masu_mean_most;
     if (masu_half_means && !(stored && dot(abs(old.mean.rgb), vec3(1.0)) <= 6.0)) {
         stored = false;
