@@ -1,6 +1,6 @@
 /*
- * host_pass.frag: one colour: before the tone curve linear radiance, afterwards what is shown;
- * multiplied by its alpha.
+ * host_pass.frag: one colour, multiplied by its alpha: linear radiance before the tone curve, an
+ * encoded colour after it.
  */
 #version 450
 

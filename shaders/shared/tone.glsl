@@ -1,6 +1,6 @@
 /*
  * tone.glsl: tone curves, encodings, and the bins of luminance that exposure is metered by. Total:
- * NaN and negative input is black, +Inf and what is beyond 65504 as bright as a half can be.
+ * NaN and negative input is black; +Inf and values above 65504 count as 65504, the largest half.
  *
  * Curves, of radiance times exposure, where 1 is white (include/masu.h, masu_tone):
  *   filmic   K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic
