@@ -239,7 +239,7 @@ static void a_plane_hides_nothing_of_itself(void **state) {
     int third = driver && strstr(driver, "swiftshader");
     for (int i = 0; i < 3; i++) {
         bake_ao("floor", radii[i], floor_alone);
-        open_ao("floor", 256, 192, NULL);
+        open_ao("floor", 240, 180, NULL);
         draw_from(NULL);
         bool coarse = third || on_gpu(&s);
         const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
@@ -273,7 +273,7 @@ static void a_plane_hides_nothing_of_itself(void **state) {
 static void what_lies_behind_darkens_nothing_before_it(void **state) {
     (void)state;
     bake_ao("plate", 1, plate);
-    open_ao("plate", 256, 192, NULL);
+    open_ao("plate", 240, 180, NULL);
     draw_from(NULL);
     const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
     const float *depths = read_image(&s, slot, MASU_READBACK_DEPTH);
@@ -458,7 +458,7 @@ static void scenes_that_do_not_ask_have_none_of_it(void **state) {
 
 static void extremes_give_finite_pixels(void **state) {
     (void)state;
-    static const VkExtent2D sizes[] = {{1, 1}, {2, 1}, {1, 3}, {5, 7}, {64, 48}};
+    static const VkExtent2D sizes[] = {{1, 1}, {2, 1}, {1, 3}, {5, 7}, {66, 48}};
     static const double radii[] = {1e-3, 1, 1e6};
     static const char *const cameras[] = {
         "{\"fov_y\": 50, \"near\": 0.05, \"keys\": [{\"position\": [3, 2, 4], \"target\": [0, 0.4, "

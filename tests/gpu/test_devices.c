@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 64, H = 48, ROWS = 32, LINE = 1024 };
+enum { W = 66, H = 48, ROWS = 32, LINE = 1024 };
 
 /* A feature that a plan may lack, found by one of its passes. */
 typedef struct feature {

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 128, H = 72 };
+enum { W = 130, H = 72 };
 
 /* Position of the visible region's centre, from the offset: at a border of the anchor's grid, so
  * that small movements of the camera change the anchor. */

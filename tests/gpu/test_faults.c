@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 48, H = 32, BYTES = W * H * 4, FRAMES = 3 };
+enum { W = 44, H = 36, BYTES = W * H * 4, FRAMES = 3 };
 
 typedef enum stage { QUERY, INIT, LOAD, DRAW, LIVE, SIZE, SCENE, DRAW_AGAIN, STAGES } stage;
 static const char *const stage_names[] = {"query", "init",   "load",  "frames",

@@ -17,7 +17,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { SIDE = 64, FACES = 8 };
+enum { SIDE = 66, FACES = 8 };
 
 /* ---- Expected images ------------------------------------------------------------------------- */
 
@@ -753,7 +753,7 @@ static uint32_t first_lit(const uint16_t *row, uint32_t count, uint32_t *last) {
  * to an eighth. Upright or oblique; the depths and the nearness to the camera are no matter. */
 static void an_orthographic_camera_sees_no_depth(void **state) {
     (void)state;
-    enum { COLUMNS = 15360, ROWS = 16 };
+    enum { COLUMNS = 15360, ROWS = 18 };
     static const struct {
         double height, depth, turn, away; /* of the picture; of the box, in heights; of the camera, radians and metres */
     } cases[] = {{4, 0, 0, 10}, {4, 0.5, 0, 10}, {4, -0.5, 0, 10}, {4, 0.5, 0.6, 30}, {400, -0.5, 0.6, 1000}, {0.02, 0.5, -0.9, 0.1}};

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 64, H = 48, BYTES = W * H * 4 };
+enum { W = 66, H = 48, BYTES = W * H * 4 };
 
 /* Polygons and an SDF; shadows; traced reflections of both. */
 static const char *const scenes[] = {"test_both", "test_shadows", "test_reflections"};
@@ -249,7 +249,7 @@ static void twice_the_size_takes_the_pass_that_fits_the_vendor(void **state) {
     static const struct {
         uint32_t vendor, twice;
     } vendors[] = {{0x1002, 1}, {0x8086, 1}, {0x5143, 1}, {0x10005, 1}, {0x13B5, 0}, {0x14E4, 0}};
-    masu_session_desc d = test_desc("test_both", 64, 48);
+    masu_session_desc d = test_desc("test_both", W, H);
     masu_session s;
     static masu_plan_info plan;
     d.desc.rung_count = 1;

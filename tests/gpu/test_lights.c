@@ -242,7 +242,7 @@ static void bake_many(const char *name, uint32_t lights, double size, double low
 /* A light closer than every surface of a tile, or before the sky, lights the pane in between. */
 static void tiles_begin_at_the_near_plane(void **state) {
     (void)state;
-    static uint16_t by_tiles[4 * 96 * 64];
+    static uint16_t by_tiles[4 * 96 * 66];
     pictures p;
     used = 0;
     add("{\"models\": [{\"mesh\": {\"box\": {\"size\": [8, 4, 1]}}, \"translate\": [0, -3, -20]}, "
@@ -253,11 +253,11 @@ static void tiles_begin_at_the_near_plane(void **state) {
         "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 1], \"intensity\": 20, \"range\": "
         "6}]}");
     bake_scene("before", json);
-    open_pictures(&p, "before", 96, 64, 1);
+    open_pictures(&p, "before", 96, 66, 1);
     masu_camera c = look(0, 0, 6, 0, 0, -1, 0.9);
     memcpy(by_tiles, take(&p, &c, NULL, TILES, NULL), sizeof by_tiles);
     assert_memory_equal(by_tiles, take(&p, &c, NULL, ALL_LIGHTS, NULL), sizeof by_tiles);
-    assert_true(lit_pixels(by_tiles, 96 * 64) > 96 * 64 * 3 / 4);
+    assert_true(lit_pixels(by_tiles, 96 * 66) > 96 * 66 * 3 / 4);
     close_session(&p.s);
 }
 
@@ -267,11 +267,11 @@ static void tiles_change_no_bit(void **state) {
         uint32_t lights, width, height, frames;
         double size, low, high, near; /* of the scene, ranges of lights in it, metres */
     } cases[] = {
-        {1, 64, 40, 10, 1, 2, 30, 0.05},         {20, 64, 40, 20, 1, 0.05, 20, 0.05},
+        {1, 66, 40, 10, 1, 2, 30, 0.05},         {20, 66, 40, 20, 1, 0.05, 20, 0.05},
         {63, 81, 47, 8, 1, 0.05, 10, 0.01},      {64, 97, 33, 8, 1, 0.05, 10, 1},
         {200, 1, 1, 30, 1, 0.3, 20, 0.05},       {200, 17, 5, 20, 1, 0.3, 20, 0.05},
         {200, 15, 33, 20, 1, 0.01, 5, 0.001},    {200, 80, 48, 3, 1, 10, 40, 0.05},
-        {1024, 80, 64, 4, 1, 0.05, 4, 0.05},     {256, 48, 48, 12, 1e4, 0.02, 20, 1e-2},
+        {1024, 80, 66, 4, 1, 0.05, 4, 0.05},     {256, 48, 48, 12, 1e4, 0.02, 20, 1e-2},
         {256, 48, 48, 12, 1e-3, 0.02, 20, 1e-6},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -411,7 +411,7 @@ static void a_light_is_a_sun_of_its_direction(void **state) {
     add_sdf();
     add_lights(1, 1, 1, 2);
     bake_scene("one", json);
-    open_pictures(&p, "one", 96, 64, 1);
+    open_pictures(&p, "one", 96, 66, 1);
     masu_camera c = look(3, 3.5, 9, -3, -3, -9, 0.9);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         masu_punctual_light_state s = {.range = (float)cases[i].range,
@@ -468,7 +468,7 @@ static void a_pane_is_lit_as_by_a_sun_of_the_lights_direction(void **state) {
             kinds[i]);
         add_lights(1, 1, 1, 2);
         bake_scene("pane", json);
-        open_pictures(&p, "pane", 96, 64, 1);
+        open_pictures(&p, "pane", 96, 66, 1);
         masu_camera c = look(0.5, 0.25, 4, 0, 0, -1, 0.9);
         masu_punctual_light_state near = lamp_at(1, -0.5, 1, 8, 3),
                                   spot = lamp_at(-2, 1, 3, 30, 20);
@@ -487,7 +487,7 @@ static void a_pane_is_lit_as_by_a_sun_of_the_lights_direction(void **state) {
  * the centre is out of view. */
 static void a_particle_scatters_a_quarter_of_each_light(void **state) {
     (void)state;
-    static uint16_t culled[4 * 96 * 64];
+    static uint16_t culled[4 * 96 * 66];
     pictures p;
     blends = 1;
     used = 0;
@@ -497,7 +497,7 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
         "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, ");
     add_lights(2, 1, 1, 2);
     bake_scene("spark", json);
-    open_pictures(&p, "spark", 96, 64, 1);
+    open_pictures(&p, "spark", 96, 66, 1);
     masu_camera c = look(0, 0, 6, 0, 0, -1, 0.9);
     masu_punctual_light_state lights[2] = {lamp_at(1, 0.5, 0.25, 6, 4), lamp_at(-2, 1, 2, 20, 9)};
     lights[1].spot = 1, lights[1].inner = 0.2f, lights[1].outer = 0.6f;
@@ -513,7 +513,7 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
                                .opacity = 1,
                                .edge = 1,
                                .flags = MASU_PARTICLE_LIT};
-        spark.position[0] = far ? 6.5 : 0.2; /* the right side is at 4.4 */
+        spark.position[0] = far ? 6.5 : 0.2; /* the right side is at 4.2 */
         sparks[0] = spark;
         double want[3] = {0};
         for (uint32_t i = 0; i < 2; i++) {
@@ -531,7 +531,7 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
         memcpy(culled, take(&p, &c, NULL, TILES, NULL), sizeof culled);
         assert_memory_equal(culled, take(&p, &c, NULL, ALL_LIGHTS, NULL), sizeof culled);
         assert_memory_equal(culled, take(&p, &c, NULL, UNCULLED, NULL), sizeof culled);
-        const uint16_t *is = culled + 4 * (32 * 96 + (far ? 94 : 49));
+        const uint16_t *is = culled + 4 * (33 * 96 + (far ? 94 : 49));
         for (int k = 0; k < 3; k++) {
             if (!(want[k] > 0.01) || fabs(half_float(is[k]) - want[k]) > 2e-3 * want[k])
                 fail_msg("%d, channel %d: %g, not %g", far, k, half_float(is[k]), want[k]);
@@ -549,7 +549,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
     add_sdf();
     add_lights(1, 1, 1, 2);
     bake_scene("one", json);
-    open_pictures(&p, "one", 64, 48, 1);
+    open_pictures(&p, "one", 66, 48, 1);
     masu_camera c = look(3, 3.5, 9, -3, -3, -9, 0.9);
     masu_punctual_light one = masu_punctual_light_at(p.s.m, 0);
     const masu_punctual_light_state plain = {
@@ -615,7 +615,7 @@ static void bad_values_are_refused_with_a_line(void **state) {
     begin_scene(1);
     add_lights(2, 1, 1, 2);
     bake_scene("two", json);
-    open_pictures(&p, "two", 16, 16, 1);
+    open_pictures(&p, "two", 18, 18, 1);
     masu_punctual_light light = masu_punctual_light_find(p.s.m, "l0");
     masu_punctual_light_state good, is;
     assert_int_equal(light.id, masu_punctual_light_at(p.s.m, 0).id);
@@ -688,7 +688,7 @@ static void a_light_moves_with_its_instance(void **state) {
     add("\"lights\": [{\"type\": \"spot\", \"position\": [0, 0.5, 2], \"direction\": [0, -0.5, 1], "
         "\"outer\": 40, \"intensity\": 30, \"instance\": \"thing3\", \"name\": \"lamp\"}]}");
     bake_scene("lamp", json);
-    open_pictures(&p, "lamp", 64, 48, 1);
+    open_pictures(&p, "lamp", 66, 48, 1);
     masu_camera c = look(3, 6, 9, -3, -6, -9, 1.2);
     masu_instance car = masu_instance_find(p.s.m, "thing3");
     masu_punctual_light lamp = masu_punctual_light_find(p.s.m, "lamp");
@@ -731,7 +731,7 @@ static void a_scene_without_lights_has_no_pass_for_them(void **state) {
         begin_scene(1);
         add_lights(lights, 1, 1, 2);
         bake_scene("few", json);
-        open_pictures(&p, "few", 16, 16, 1);
+        open_pictures(&p, "few", 18, 18, 1);
         masu_plan_of(p.s.m, &plan);
         uint32_t passes = 0, buffers = 0, n = memory_rows(p.s.m, rows);
         for (uint32_t i = 0; i < plan.pass_count; i++) {

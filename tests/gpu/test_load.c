@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 96, H = 64, BYTES = W * H * 4, RUNGS = 2, AFTER = 3 };
+enum { W = 96, H = 66, BYTES = W * H * 4, RUNGS = 2, AFTER = 3 };
 #define STEP ((uint64_t)MASU_LOAD_STEP_MIN)
 
 static uint8_t picture[BYTES], live[BYTES];

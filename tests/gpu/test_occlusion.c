@@ -18,7 +18,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { W = 160, H = 90 };
+enum { W = 160, H = 90, MID_W = 120, MID_H = 90, SMALL_W = 66, SMALL_H = 48 };
 
 static masu_session s;
 
@@ -237,13 +237,13 @@ static void nothing_shadows_itself(void **state) {
         snprintf(options, sizeof options,
                  "\"shadows\": {}, \"ambient_occlusion\": {\"radius\": %g}", scale);
         bake_sdf("alone", fields[i / 2], "", plain_sun, scale, options);
-        open_scene("alone", 256, 192);
+        open_scene("alone", 240, 180);
         draw_once();
         const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION),
                        *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
         const float *depths = read_image(&s, 0, MASU_READBACK_DEPTH);
         uint32_t looked = 0, dark = 0, closed = 0;
-        for (uint32_t k = 0; k < 256 * 192; k++) {
+        for (uint32_t k = 0; k < 240 * 180; k++) {
             float n[3];
             masu_unpack_normal(normals[k], n);
             const double e = 40 * 3.14159265 / 180, a = 70 * 3.14159265 / 180;
@@ -273,16 +273,16 @@ static void what_is_out_of_sight_casts_its_shadow(void **state) {
              "part caster = translate((-12, 8, 0), sphere(1.5));\n"
              "for i in 0..6 { part other = translate((30, 2 * i, 30), sphere(0.5)); }\n",
              "", "\"direction\": [-12, 8, 0]", 1, hard);
-    open_scene("aside", 128, 96);
+    open_scene("aside", MID_W, MID_H);
     draw_once();
     const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
     const uint32_t *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
     uint32_t dark = 0;
-    for (uint32_t k = 0; k < 128 * 96; k++) dark += normals[k] && sun_share(seen, k) < 0.1;
-    assert_true(sun_share(seen, 48 * 128 + 64) < 0.01); /* the origin: on the line to the sun */
+    for (uint32_t k = 0; k < MID_W * MID_H; k++) dark += normals[k] && sun_share(seen, k) < 0.1;
+    assert_true(sun_share(seen, MID_H / 2 * MID_W + MID_W / 2) < 0.01); /* the origin: on the line to the sun */
     /* An ellipse of half axes 1.5 and 1.5 / sin(33.7 degrees) at distance 5.8, approximately. */
     assert_in_range(dark, 300, 4000);
-    assert_true(sun_share(seen, 90 * 128 + 120) > 0.99);
+    assert_true(sun_share(seen, 84 * MID_W + 112) > 0.99);
     close_session(&s);
 }
 
@@ -292,11 +292,11 @@ static void an_sdf_shadows_polygons(void **state) {
     bake_sdf("floor", "part caster = translate((0, 1, 0), sphere(0.7));\n",
              "\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 12, \"size_z\": 12}}}],",
              "\"direction\": [0, 1, 0], \"color\": [1, 1, 1]", 1, hard);
-    open_scene("floor", 128, 96);
+    open_scene("floor", MID_W, MID_H);
     draw_once();
     const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
     const uint16_t *hdr = read_image(&s, 0, MASU_READBACK_HDR);
-    const uint32_t shadow = 48 * 128 + 64, light = 48 * 128 + 6;
+    const uint32_t shadow = MID_H / 2 * MID_W + MID_W / 2, light = MID_H / 2 * MID_W + 6;
     assert_true(sun_share(seen, shadow) < 0.001);
     assert_true(ambient_share(seen, shadow) < 1.0 && ambient_share(seen, shadow) > 0.5);
     assert_true(sun_share(seen, light) > 0.999);
@@ -322,7 +322,7 @@ static void a_scene_that_does_not_ask_has_none_of_it(void **state) {
     if (!whole_run()) return; /* the plan does not depend on the driver */
     for (int i = 0; i < 3; i++) {
         bake_with("test_sphere_sdf", options[i]);
-        open_scene("test_sphere_sdf", 64, 48);
+        open_scene("test_sphere_sdf", SMALL_W, SMALL_H);
         draw_once();
         masu_plan_of(s.m, &plan);
         stats = stats_of(&s, 0);
@@ -358,14 +358,14 @@ static void extremes_give_finite_pixels(void **state) {
         if (i != 0 && i != 3 && i != 4 && !long_run()) continue;
         if (i == 4 && !whole_run()) continue;
         bake_with(scenes[i / 2], options[i % 2]);
-        open_scene(scenes[i / 2], 64, 48);
+        open_scene(scenes[i / 2], SMALL_W, SMALL_H);
         draw_once();
         const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
         const uint16_t *hdr = read_image(&s, 0, MASU_READBACK_HDR);
         const float *depths = read_image(&s, 0, MASU_READBACK_DEPTH);
         uint32_t surface = 0;
         double lit = 0;
-        for (uint32_t k = 0; k < 64 * 48; k++) {
+        for (uint32_t k = 0; k < SMALL_W * SMALL_H; k++) {
             for (int c = 0; c < 4; c++) assert_true((hdr[4 * k + c] & 0x7C00) != 0x7C00);
             if (!(depths[k] > 0)) continue;
             surface++;

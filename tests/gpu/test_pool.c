@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 96, H = 64, BYTES = W * H * 4 };
+enum { W = 88, H = 72, BYTES = W * H * 4 };
 
 static masu_pipelines pool;
 
@@ -55,7 +55,7 @@ static void what_is_known_is_not_made_again(void **state) {
     open_session(&s, &d);
     static const char *const scenes[] = {"test_live", "test_live_moved", "test_live",
                                          "test_both", "test_live_moved", "test_reserve"};
-    const uint32_t sizes[][2] = {{96, 64}, {96, 64}, {80, 56}, {96, 64}, {96, 64}, {96, 64}};
+    const uint32_t sizes[][2] = {{W, H}, {W, H}, {80, 56}, {W, H}, {W, H}, {W, H}};
     for (uint32_t i = 0; i < 6; i++) {
         masu_pipelines_info before = told();
         uint32_t w = sizes[i][0], h = sizes[i][1];

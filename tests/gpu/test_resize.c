@@ -67,7 +67,7 @@ static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_
 }
 
 static const uint32_t sizes[][2] = {{97, 61}, {160, 90}, {2, 90},  {1, 1},
-                                    {160, 1}, {33, 20},  {128, 88}};
+                                    {160, 1}, {33, 20},  {112, 80}};
 
 /* halves: history in half floats, as on devices that do not filter unorm. */
 static void compare_sizes(const char *scene, size_t count, int halves) {

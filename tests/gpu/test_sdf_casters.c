@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 128, HEIGHT = 96, PIXELS = WIDTH * HEIGHT, SHADOWS = 0, NONE = 1, SETTLED = 24 };
+enum { WIDTH = 130, HEIGHT = 94, PIXELS = WIDTH * HEIGHT, SHADOWS = 0, NONE = 1, SETTLED = 24 };
 
 static uint64_t evals; /* of the field, in the last images */
 static uint32_t faces;

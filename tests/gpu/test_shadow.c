@@ -187,7 +187,7 @@ static void a_plane_has_no_acne_under_any_sun(void **state) {
     static const double azimuths[] = {0, 33, 45, 190};
     begin();
     finish("plane", GROUND, 512, "");
-    shadow_open(&t, "plane", 128, 96, NULL);
+    shadow_open(&t, "plane", 130, 94, NULL);
     for (size_t i = 0; i < 4 * sizeof elevations / sizeof *elevations; i++) {
         uint32_t looked;
         shadow_sun(&t, azimuths[i % 4], elevations[i / 4]);
@@ -376,7 +376,7 @@ static void a_sheet_above_the_ground_casts_from_a_few_texels_on(void **state) {
         add("{\"mesh\": {\"plane\": {\"size_x\": 2, \"size_z\": 2}}, \"translate\": [0, %g, 0]}, ",
             height);
         finish("above", SPOT, 512, "");
-        shadow_open(&t, "above", 64, 48, NULL);
+        shadow_open(&t, "above", 66, 48, NULL);
         for (int i = 0; i < 4; i++) {
             /* All visible surfaces are ground, and dark. */
             shadow_point p = {.z = height / 2};

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 96, HEIGHT = 64, FRAMES = 48, KEPT = 16 };
+enum { WIDTH = 96, HEIGHT = 66, FRAMES = 48, KEPT = 16 };
 
 typedef struct glow {
     double light;     /* mean radiance of the mirror */

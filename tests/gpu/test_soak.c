@@ -16,7 +16,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 64, H = 36, BYTES = W * H * 4, SCENES = 3, SCENE_FRAMES = 100, SIZE_FRAMES = 20 };
+enum { W = 66, H = 36, BYTES = W * H * 4, SCENES = 3, SCENE_FRAMES = 100, SIZE_FRAMES = 20 };
 
 static const char *const scenes[SCENES] = {"test_live", "test_velocity", "test_sky"};
 static masu_session opened[SCENES]; /* the first has the device */

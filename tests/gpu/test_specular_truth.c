@@ -21,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 64, H = 48, MATERIALS = 16, PIXELS = 192 /* of a material, at most */ };
+enum { W = 66, H = 48, MATERIALS = 16, PIXELS = 192 /* of a material, at most */ };
 
 static masu_session s;
 static uint32_t slot;
@@ -433,7 +433,7 @@ static void only_tiles_that_mirror_are_traced(void **state) {
     bake_scene("plates", plates);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         if (i > 1 && !whole_run()) break;
-        open_scene("plates", 128, 128, &cases[i].rung, cases[i].reference);
+        open_scene("plates", 130, 130, &cases[i].rung, cases[i].reference);
         draw_frames(2, NULL);
         masu_stats_info stats = stats_of(&s, slot);
         print_message("  cut-off %.2f: %u tiles, %u rays\n", (double)cases[i].rung.specular_cutoff,

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 128, H = 72 };
+enum { W = 130, H = 72 };
 
 static masu_session s;
 
