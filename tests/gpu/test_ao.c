@@ -239,14 +239,14 @@ static void a_plane_hides_nothing_of_itself(void **state) {
     int third = driver && strstr(driver, "swiftshader");
     for (int i = 0; i < 3; i++) {
         bake_ao("floor", radii[i], floor_alone);
-        open_ao("floor", 240, 180, NULL);
+        open_ao("floor", 250, 192, NULL);
         draw_from(NULL);
         bool coarse = third || on_gpu(&s);
         const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
         const float *depths = read_image(&s, slot, MASU_READBACK_DEPTH);
         uint32_t sky = 0, surface = 0, low = 0;
         double least = 1, sum = 0;
-        for (uint32_t k = 0; k < 256 * 192; k++) {
+        for (uint32_t k = 0; k < 250 * 192; k++) {
             /* no shadow map, no SDF: the sun is fully visible */
             assert_int_equal(seen[k] & 0xFFFF, 0xFFFF);
             if (!(depths[k] > 0)) {
@@ -273,13 +273,13 @@ static void a_plane_hides_nothing_of_itself(void **state) {
 static void what_lies_behind_darkens_nothing_before_it(void **state) {
     (void)state;
     bake_ao("plate", 1, plate);
-    open_ao("plate", 240, 180, NULL);
+    open_ao("plate", 250, 192, NULL);
     draw_from(NULL);
     const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
     const float *depths = read_image(&s, slot, MASU_READBACK_DEPTH);
     uint32_t before = 0, dark = 0;
     double least = 1;
-    for (uint32_t k = 0; k < 256 * 192; k++) {
+    for (uint32_t k = 0; k < 250 * 192; k++) {
         double z = 0.05 / (double)depths[k], share = ambient_share(seen, k);
         if (fabs(z - 3.7) < 0.01) least = fmin(least, share), before++;
         if (fabs(z - 4.0) < 0.01) dark += share < 0.8;

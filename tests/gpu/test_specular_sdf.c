@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 96, H = 66, TEXELS = W * H, SLOTS = 1 << 17 };
+enum { W = 88, H = 72, TEXELS = W * H, SLOTS = 1 << 17 };
 
 static struct {
     uint32_t guide[2 * TEXELS], ray[2 * TEXELS], before[4 * TEXELS], hit[4 * TEXELS];

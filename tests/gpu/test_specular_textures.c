@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 66, PIXELS = SIDE * SIDE };
+enum { SIDE = 68, PIXELS = SIDE * SIDE };
 #define SCENE "test_mirror_textures"
 
 static masu_session s;
