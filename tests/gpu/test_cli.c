@@ -166,7 +166,7 @@ static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(vo
     (void)state;
     const char *scene = scene_path("test_both");
     assert_int_equal(
-        cli_run("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, scratch), 1);
+        cli_run("render %s -o %s/no/such/folder.png --size 18x18 --quiet", scene, scratch), 1);
     cli_complained("folder.png");
     write_bytes("old.png", "old", 3);
     assert_int_equal(cli_run("upscale %s/none.png %s/old.png --size 8x8", scratch, scratch), 1);
@@ -174,9 +174,9 @@ static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(vo
     char text[16];
     take_text("old.png", text, sizeof text);
     assert_string_equal(text, "old");
-    assert_int_equal(cli_run("render %s -o /dev/full --size 16x16 --quiet", scene), 1);
+    assert_int_equal(cli_run("render %s -o /dev/full --size 18x18 --quiet", scene), 1);
     cli_complained("/dev/full");
-    assert_int_equal(cli_run("render %s --stats /dev/full --size 16x16 --quiet", scene), 1);
+    assert_int_equal(cli_run("render %s --stats /dev/full --size 18x18 --quiet", scene), 1);
     cli_complained("/dev/full");
 }
 
@@ -186,7 +186,7 @@ static void an_unknown_device_lists_those_that_are_there(void **state) {
         cli_run("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), scratch), 1);
     cli_complained("nonesuch");
     assert_non_null(strstr(cli_err, "0 '"));
-    assert_int_equal(cli_run("render %s -o %s/x.png --device 0 --frame --size 16x16 --quiet",
+    assert_int_equal(cli_run("render %s -o %s/x.png --device 0 --frame --size 18x18 --quiet",
                              scene_path("test_both"), scratch),
                      0);
 }
@@ -196,7 +196,7 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     const char *scene = scene_path("test_both");
     assert_int_equal(
         cli_run(
-            "render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet",
+            "render %s -o %s/a.png --size 66x48 --stats %s/a.json --frames 3 --validate --quiet",
             scene, scratch, scratch),
         0);
     assert_string_equal(cli_err, "");
@@ -204,7 +204,7 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     char path[256], error[ERROR_SIZE];
     snprintf(path, sizeof path, "%s/a.png", scratch);
     assert_ok(masu_image_load_png(path, &image, error, sizeof error));
-    assert_int_equal(image.width, 64);
+    assert_int_equal(image.width, 66);
     assert_int_equal(image.height, 48);
     masu_image_free(&image);
     static const char *const keys[] = {"\"driver\"",
@@ -221,14 +221,14 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     }
     assert_null(strstr(cli_out, "\"exposure\"")); /* no auto-exposure */
     assert_int_equal(
-        cli_run("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
+        cli_run("render %s -o %s/a.png --size 66x48 --stats - --exposure auto --tone neutral "
                 "--dither --validate --quiet",
                 scene, scratch),
         0);
     assert_non_null(strstr(cli_out, "\"exposure\""));
     assert_non_null(strstr(cli_out, "\"meter\""));
     assert_int_equal(
-        cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, scratch), 0);
+        cli_run("render %s -o %s/f-###.png --size 18x18 --frames 2 --quiet", scene, scratch), 0);
     assert_true(is_in_scratch("f-000.png") && is_in_scratch("f-001.png") &&
                 !is_in_scratch("f-002.png"));
     /* Clips play unless they are disabled. */
@@ -236,7 +236,7 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
                                        " --animate=off --time 0"};
     uint64_t hash[4];
     for (size_t i = 0; i < 4; i++) {
-        assert_int_equal(cli_run("render %s -o %s/f.png --frame --size 48x32 --quiet --time 0.5%s",
+        assert_int_equal(cli_run("render %s -o %s/f.png --frame --size 48x34 --quiet --time 0.5%s",
                                  scene_path("test_swing"), scratch, ways[i]),
                          0);
         snprintf(path, sizeof path, "%s/f.png", scratch);
@@ -255,7 +255,7 @@ static void the_governor_reports_what_it_has_done(void **state) {
     (void)state;
     const char *scene = scene_path("test_sphere_sdf");
     assert_int_equal(
-        cli_run("render %s --target-ms 1000 --ladder off --frames 12 --size 32x24 --times %s/t.csv "
+        cli_run("render %s --target-ms 1000 --ladder off --frames 12 --size 36x22 --times %s/t.csv "
                 "--stats %s/g.json",
                 scene, scratch, scratch),
         0);
@@ -269,7 +269,7 @@ static void the_governor_reports_what_it_has_done(void **state) {
     take_text("g.json", cli_out, sizeof cli_out);
     assert_non_null(strstr(cli_out, "\"predicted_ms\""));
     assert_int_equal(
-        cli_run("render %s --target-ms 5 --ladder off --rung 3 --frames 5 --size 32x24", scene), 0);
+        cli_run("render %s --target-ms 5 --ladder off --rung 3 --frames 5 --size 36x22", scene), 0);
     assert_non_null(strstr(cli_out, "rung 3, scale 0.675:     5 frames"));
     assert_non_null(strstr(cli_out, "the rung is fixed"));
     assert_int_equal(cli_run("render %s --target-ms 0.016", scene), 2);
@@ -281,7 +281,7 @@ static void write_ladder(const char *name, const char *second_ratio, const char 
     snprintf(
         text, sizeof text,
         "{\"scene\": \"a.masu\", \"hash\": \"0\", \"driver\": \"D\", \"date\": \"2026-01-02\", "
-        "\"width\": 32, \"height\": 24, \"time\": 0.0, \"clock\": \"wall\", \"error\": \"flip\", "
+        "\"width\": 36, \"height\": 22, \"time\": 0.0, \"clock\": \"wall\", \"error\": \"flip\", "
         "\"rungs\": [{\"setting\": \"base\", \"ratio\": 1, \"wall_ms\": 2, \"gpu_ms\": 2, "
         "\"flip\": 0.1, \"rmse\": 3, \"knobs\": {\"scale\": 1, \"aa\": \"smaa-low\"}}, "
         "{\"setting\": \"scale=0.5\", \"ratio\": %s, \"wall_ms\": 1, \"gpu_ms\": 1, "
@@ -297,34 +297,34 @@ static void ladders_are_read_and_shown(void **state) {
     write_ladder("l.json", "0.5", "");
     write_ladder("bad.json", "1.5", "");
     assert_int_equal(cli_run("bench --ladder %s/l.json", scratch), 0);
-    assert_non_null(strstr(cli_out, "a.masu at 32x24, by wall, 2026-01-02"));
+    assert_non_null(strstr(cli_out, "a.masu at 36x22, by wall, 2026-01-02"));
     assert_non_null(strstr(cli_out, "     1  0.500  0.2500    5.00     -  scale=0.5"));
     assert_int_equal(cli_run("bench --ladder %s/bad.json", scratch), 1);
     cli_complained("rungs[1]: ratio: expected less than the previous rung, 1, found 1.5");
     assert_int_equal(cli_run("bench --ladder"), 2);
     cli_complained("no ladder");
     /* In programs that plan or render. */
-    assert_int_equal(cli_run("plan %s --size 32x24 --ladder %s/l.json", scene, scratch), 0);
-    assert_non_null(strstr(cli_out, "1  renders 16x12, "));
+    assert_int_equal(cli_run("plan %s --size 36x22 --ladder %s/l.json", scene, scratch), 0);
+    assert_non_null(strstr(cli_out, "1  renders 18x11, "));
     assert_non_null(strstr(cli_out, "time 0.500, FLIP 0.2500"));
-    assert_int_equal(cli_run("plan %s --size 32x24 --ladder auto", scene), 0);
+    assert_int_equal(cli_run("plan %s --size 36x22 --ladder auto", scene), 0);
     assert_non_null(strstr(cli_out, "class: both; ladder: "));
     assert_int_equal(
-        cli_run("render %s --target-ms 1000 --frames 3 --size 32x24 --ladder %s/l.json", scene,
+        cli_run("render %s --target-ms 1000 --frames 3 --size 36x22 --ladder %s/l.json", scene,
                 scratch),
         0);
     assert_non_null(strstr(cli_out, "rung 1, scale 0.500:     0 frames"));
     assert_null(strstr(cli_out, "rung 2"));
-    assert_int_equal(cli_run("render %s -o %s/l.png --frame --rung 1 --size 32x24 --ladder auto",
+    assert_int_equal(cli_run("render %s -o %s/l.png --frame --rung 1 --size 36x22 --ladder auto",
                              scene, scratch),
                      0);
     assert_int_equal(
-        cli_run("render %s -o %s/l.png --rung 2 --size 32x24 --ladder %s/l.json --quiet", scene,
+        cli_run("render %s -o %s/l.png --rung 2 --size 36x22 --ladder %s/l.json --quiet", scene,
                 scratch, scratch),
         2);
     cli_complained("--rung: expected 0 to 1, found 2");
     assert_int_equal(
-        cli_run("render %s -o %s/l.png --size 32x24 --ladder %s/bad.json", scene, scratch, scratch),
+        cli_run("render %s -o %s/l.png --size 36x22 --ladder %s/bad.json", scene, scratch, scratch),
         1);
     cli_complained("bad.json: rungs[1]: ratio");
 }
@@ -347,7 +347,7 @@ static void a_setting_is_drawn_by_its_name(void **state) {
         struct masu_image images[2];
         for (int k = 0; k < 2; k++) {
             snprintf(name, sizeof name, "%s/setting%d.png", scratch, k);
-            assert_int_equal(cli_run("render %s -o %s --frame --size 64x48 --time 1 %s", scene,
+            assert_int_equal(cli_run("render %s -o %s --frame --size 66x48 --time 1 %s", scene,
                                      name, pairs[i][k]),
                              0);
             assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
@@ -366,7 +366,7 @@ static int changed_by(const char *scene, const char *options) {
     int changed = 0;
     for (int k = 0; k < 2; k++) {
         snprintf(name, sizeof name, "%s/changed%d.png", scratch, k);
-        if (cli_run("render %s -o %s --frame --size 64x48 --time 0.4 --animate %s",
+        if (cli_run("render %s -o %s --frame --size 66x48 --time 0.4 --animate %s",
                     scene_path(scene), name, k ? options : ""))
             fail_msg("%s: %s", options, cli_err);
         assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
@@ -408,11 +408,11 @@ static void linear_light_is_written_in_both_formats(void **state) {
     char name[256], error[ERROR_SIZE];
     for (int k = 0; k < 3; k++) {
         snprintf(name, sizeof name, "%s/linear.%s", scratch, ends[k]);
-        assert_int_equal(cli_run("render %s -o %s --frame --size 64x48 --tone none --exposure 0.5",
+        assert_int_equal(cli_run("render %s -o %s --frame --size 66x48 --tone none --exposure 0.5",
                                  scene_path("test_both"), name),
                          0);
         assert_ok(masu_image_load(name, &images[k], error, sizeof error));
-        assert_int_equal(images[k].width, 64);
+        assert_int_equal(images[k].width, 66);
         assert_int_equal(images[k].height, 48);
     }
     assert_memory_equal(images[0].values, images[1].values, 3 * 64 * 48 * sizeof(float));
@@ -422,12 +422,12 @@ static void linear_light_is_written_in_both_formats(void **state) {
         assert_true(abs(shown - have) <= 1);
     }
     for (int k = 0; k < 3; k++) masu_image_free(&images[k]);
-    assert_int_equal(cli_run("render %s -o %s/half.pfm --frame --size 64x48 --setting scale=0.5",
+    assert_int_equal(cli_run("render %s -o %s/half.pfm --frame --size 66x48 --setting scale=0.5",
                              scene_path("test_both"), scratch),
                      0);
     snprintf(name, sizeof name, "%s/half.pfm", scratch);
     assert_ok(masu_image_load(name, &images[0], error, sizeof error));
-    assert_int_equal(images[0].width, 32);
+    assert_int_equal(images[0].width, 33);
     masu_image_free(&images[0]);
 }
 
@@ -435,7 +435,7 @@ static void linear_light_is_written_in_both_formats(void **state) {
  * areas. */
 static void without_options_the_still_is_settled(void **state) {
     (void)state;
-    enum { W = 64, H = 48 };
+    enum { W = 66, H = 48 };
     static const char *const ways[] = {"--frame", "", "--truth=16"};
     struct masu_image images[3];
     char name[256], error[ERROR_SIZE];
@@ -443,7 +443,7 @@ static void without_options_the_still_is_settled(void **state) {
     for (int k = 0; k < 3; k++) {
         snprintf(name, sizeof name, "%s/still%d.png", scratch, k);
         assert_int_equal(
-            cli_run("render %s -o %s --size 64x48 %s", scene_path("test_both"), name, ways[k]), 0);
+            cli_run("render %s -o %s --size 66x48 %s", scene_path("test_both"), name, ways[k]), 0);
         assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
         if (k == 1) assert_non_null(strstr(cli_err, "masu: still: "));
     }
@@ -455,13 +455,13 @@ static void without_options_the_still_is_settled(void **state) {
 
 static void sequences_are_numbered_files_and_video(void **state) {
     (void)state;
-    enum { W = 16, H = 12, FRAME = 6 + 3 * W * H };
+    enum { W = 18, H = 14, FRAME = 6 + 3 * W * H };
     static uint8_t file[4096];
     const char *scene = scene_path("test_live"), *town = scene_path("test_town");
     char name[256], error[ERROR_SIZE];
     struct masu_image image, other;
     assert_int_equal(
-        cli_run("render %s --video %s/v.y4m -o %s/v#.png --frames 3 --time-step 0.04 --size 16x12",
+        cli_run("render %s --video %s/v.y4m -o %s/v#.png --frames 3 --time-step 0.04 --size 18x14",
                 scene, scratch, scratch),
         0);
     snprintf(name, sizeof name, "%s/v.y4m", scratch);
@@ -469,7 +469,7 @@ static void sequences_are_numbered_files_and_video(void **state) {
     assert_non_null(f);
     size_t count = fread(file, 1, sizeof file, f);
     (void)fclose(f);
-    static const char header[] = "YUV4MPEG2 W16 H12 F25:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\n";
+    static const char header[] = "YUV4MPEG2 W18 H14 F25:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\n";
     assert_int_equal(count, sizeof header - 1 + 3 * FRAME);
     assert_memory_equal(file, header, sizeof header - 1);
     snprintf(name, sizeof name, "%s/v2.png", scratch);
@@ -484,11 +484,11 @@ static void sequences_are_numbered_files_and_video(void **state) {
     masu_image_free(&image);
     /* The ground truth of a later frame is rendered at its time. */
     assert_int_equal(
-        cli_run("render %s -o %s/v#.png --truth=2 --frames 2 --time 1 --time-step 0.5 --size 16x12",
+        cli_run("render %s -o %s/v#.png --truth=2 --frames 2 --time 1 --time-step 0.5 --size 18x14",
                 town, scratch),
         0);
     assert_int_equal(
-        cli_run("render %s -o %s/one.png --truth=2 --time 1.5 --size 16x12", town, scratch), 0);
+        cli_run("render %s -o %s/one.png --truth=2 --time 1.5 --size 18x14", town, scratch), 0);
     snprintf(name, sizeof name, "%s/v1.png", scratch);
     assert_ok(masu_image_load_png(name, &image, error, sizeof error));
     snprintf(name, sizeof name, "%s/one.png", scratch);
@@ -518,7 +518,7 @@ static void other_anti_aliasing_takes_a_past_out_of_a_rung(void **state) {
     struct masu_image images[2];
     for (int k = 0; k < 2; k++) {
         snprintf(name, sizeof name, "%s/aa%d.png", scratch, k);
-        assert_int_equal(cli_run("render %s -o %s --size 64x48 --frames 24 --time-step 0.05 %s",
+        assert_int_equal(cli_run("render %s -o %s --size 66x48 --frames 24 --time-step 0.05 %s",
                                  scene_path("test_live"), name, ways[k]),
                          0);
         assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));

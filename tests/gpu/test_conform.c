@@ -13,7 +13,7 @@
 static void write_suite(const char *cases) {
     char text[4096];
     int n = snprintf(text, sizeof text,
-                     "{\"format\": 1, \"defaults\": {\"scene\": \"test_both\", \"size\": [32, 24],"
+                     "{\"format\": 1, \"defaults\": {\"scene\": \"test_both\", \"size\": [36, 22],"
                      " \"budget\": {\"allocations\": 0}}, \"cases\": [%s]}",
                      cases);
     write_bytes("suite.json", text, (size_t)n);
@@ -63,12 +63,12 @@ static void cases_are_judged_by_golden_files(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
     assert_int_equal(
-        cli_run("render %s -o %s/golden.exr --truth=16 --size 32x24 --quiet", scene, scratch), 0);
-    assert_int_equal(cli_run("render %s -o %s/dim.pfm --truth=16 --sun 60,20 --size 32x24 --quiet",
+        cli_run("render %s -o %s/golden.exr --truth=16 --size 36x22 --quiet", scene, scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/dim.pfm --truth=16 --sun 60,20 --size 36x22 --quiet",
                              scene, scratch),
                      0);
     assert_int_equal(
-        cli_run("render %s -o %s/golden.png --frame --size 32x24 --quiet", scene, scratch), 0);
+        cli_run("render %s -o %s/golden.png --frame --size 36x22 --quiet", scene, scratch), 0);
     write_suite(
         "{\"name\": \"good\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.exr\","
         " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08}},"
@@ -106,9 +106,9 @@ static void a_run_that_is_killed_leaves_complete_reports(void **state) {
     assert_non_null(strstr(text, "message=\"the run ended before this case\" type=\"not run\""));
     assert_non_null(strstr(text, "</testsuites>\n"));
     take_text("k.csv", text, sizeof text);
-    assert_non_null(strstr(text, "\"never\",\"test_both\",32,24,not run,"));
+    assert_non_null(strstr(text, "\"never\",\"test_both\",36,22,not run,"));
     take_text("k.md", text, sizeof text);
-    assert_non_null(strstr(text, "| not run | never 32x24 "));
+    assert_non_null(strstr(text, "| not run | never 36x22 "));
     assert_true(is_in_scratch("new/images"));
 }
 
@@ -168,7 +168,7 @@ static void extreme_cases_judge(void **state) {
     cli_said(
         "10 cases: 2 passed, 0 quality warnings, 0 not supported, 0 resource errors, 8 failed");
     take_text("t.md", table, sizeof table);
-    assert_non_null(strstr(table, "| fail | away 32x24 | a\\|b | "));
+    assert_non_null(strstr(table, "| fail | away 36x22 | a\\|b | "));
     assert_non_null(strstr(table, "pixels = 0, against here | "));
 }
 
@@ -255,7 +255,7 @@ static void a_failure_is_replayed_by_its_token(void **state) {
     char why[2][256], token[2][256], more[400], xml[8192];
     write_suite(
         "{\"name\": \"good\"},"
-        "{\"name\": \"far <&> 'off'\", \"sizes\": [[32, 24], [33, 25]], \"rung\": {\"scale\": 0.5},"
+        "{\"name\": \"far <&> 'off'\", \"sizes\": [[36, 22], [33, 25]], \"rung\": {\"scale\": 0.5},"
         " \"error\": {\"against\": \"truth\", \"positions\": 4, \"flip\": 0}},"
         "{\"name\": \"other\", \"rung\": {\"scale\": 0.5}, \"error\": {\"against\": \"good\", "
         "\"pixels\": 0}},"
@@ -290,7 +290,7 @@ static void what_is_planted_has_its_verdict(void **state) {
                 "{\"name\": \"least\", \"at_least\": {\"specular_rays\": 1}},"
                 "{\"name\": \"warns\", \"counts\": {\"triangles\": {\"warn\": 3, \"fail\": 1000}}},"
                 "{\"name\": \"scene\", \"scene\": \"none\"},"
-                "{\"name\": \"settles\", \"size\": [16, 16], \"governed\": {\"target_ms\": 20, "
+                "{\"name\": \"settles\", \"size\": [18, 18], \"governed\": {\"target_ms\": 20, "
                 "\"frames\": 60,"
                 " \"told\": {\"fixed_ms\": 1, \"load_ms\": 100}, \"settles\": [0, 1]}},"
                 "{\"name\": \"rays\", \"needs\": [\"ray-query\"]}");

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 130, H = 72, POSITIONS = 16 };
+enum { W = 128, H = 72, POSITIONS = 16 };
 
 /* Ratio of the means; 95th percentile of patches; mean square of the patches' errors over tolerance
  * and noise, without the largest tenth. */
