@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 256, H = 192 };
+enum { W = 250, H = 192 };
 
 /* ---- Rays in double precision ---------------------------------------------------------------- */
 

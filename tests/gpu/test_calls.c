@@ -14,7 +14,7 @@
 
 #include "support/wrap.h"
 
-enum { WIDTH = 32, HEIGHT = 24, RESERVE = 3, STALE = 16, SCENE = 5, CALLS = 4000 };
+enum { WIDTH = 36, HEIGHT = 22, RESERVE = 3, STALE = 16, SCENE = 5, CALLS = 4000 };
 
 /* Ids of the objects in a reserve, and of some that were removed. */
 typedef struct slots {

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 64, H = 40, BYTES = W * H * 4 };
+enum { W = 66, H = 40, BYTES = W * H * 4 };
 
 static uint8_t pixels[4][BYTES];
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 96, H = 64 };
+enum { W = 96, H = 66 };
 
 static void open_for_depth(masu_session *s, const char *scene, uint32_t steps) {
     masu_session_desc d = test_desc(scene, W, H);

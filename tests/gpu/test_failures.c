@@ -12,7 +12,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 32, H = 24 };
+enum { W = 36, H = 22 };
 
 static masu_session s;
 static void *block;

@@ -12,7 +12,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 64, H = 48 };
+enum { W = 66, H = 48 };
 
 /* The library's own heap allocations are counted without the validation layer, which allocates
  * inside the calls it wraps. */

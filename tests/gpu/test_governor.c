@@ -8,7 +8,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 64, H = 48 };
+enum { W = 66, H = 48 };
 
 static masu_session_desc governed_desc(masu_governor_mode mode) {
     masu_session_desc d = test_desc("test_both", W, H);

@@ -9,7 +9,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 64, H = 48 };
+enum { W = 66, H = 48 };
 
 static void open_governed(masu_session *s, uint32_t width, uint32_t height) {
     masu_session_desc d = test_desc("test_both", width, height);

@@ -10,7 +10,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 64, H = 48, BYTES = W * H * 4, RUNGS = 3, FIRST = 1 };
+enum { W = 66, H = 48, BYTES = W * H * 4, RUNGS = 3, FIRST = 1 };
 
 static masu_session s;
 

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 128, H = 72, WIDE = 256, HIGH = 128 };
+enum { W = 130, H = 72, WIDE = 256, HIGH = 128 };
 #define PI 3.14159265358979323846
 
 static masu_detail failure; /* of the last call that failed */

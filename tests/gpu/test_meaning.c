@@ -10,7 +10,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 96, H = 64, CENTRE = H / 2 * W + W / 2 };
+enum { W = 96, H = 66, CENTRE = H / 2 * W + W / 2 };
 
 static masu_session s;
 

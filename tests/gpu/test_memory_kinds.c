@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 96, H = 64, BYTES = W * H * 4 };
+enum { W = 96, H = 66, BYTES = W * H * 4 };
 
 static uint8_t reference[BYTES], pixels[BYTES];
 

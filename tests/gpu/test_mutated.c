@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 24, H = 16, FRAMES = 3, SECTIONS_MAX = 128 };
+enum { W = 24, H = 18, FRAMES = 3, SECTIONS_MAX = 128 };
 
 static const char *const scenes[] = {"test_both", "test_skin",  "test_lods",
                                      "test_live", "test_trace", "test_texture_quad"};

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 128, H = 96, SIZE = 256 };
+enum { W = 130, H = 96, SIZE = 256 };
 
 static shadow_test t;
 

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { W = 96, H = 64, PIXELS = W * H, FRAMES = 36 };
+enum { W = 96, H = 66, PIXELS = W * H, FRAMES = 36 };
 enum { BOTH, FRUSTUM, OCCLUSION, NEITHER, WAYS }; /* rungs: stages of culling that are on */
 enum { MAPPED, WHOLE, PLAIN, VARIANTS };
 
