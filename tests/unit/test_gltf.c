@@ -990,17 +990,23 @@ static void coordinates_that_cannot_be_used_are_0(void **state) {
     }
 }
 
-/* From -2 to 3 coordinates stay. */
+/* Coordinates of a repeated texture stay if they are from -2 to 3, of a clamped one always. */
 static void coordinates_near_0_are_not_moved(void **state) {
     (void)state;
     const float rows[][3] = {{-2, 0, 0}, {nextafterf(-2, -3), 0, -1}, {1, 3, 0}, {1, nextafterf(3, 4), 2}};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const float uv[8] = {rows[i][0], 0, rows[i][1], 0, rows[i][1], 1, rows[i][0], 1};
+    for (size_t i = 0; i < 8; i++) {
+        const float *row = rows[i % 4], shift = i < 4 ? row[2] : 0;
+        const float uv[8] = {row[0], 0, row[1], 0, row[1], 1, row[0], 1};
         begin_quad();
-        char attributes[64];
+        char attributes[64], rest[512];
         snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(uv, "VEC2", 4, 2));
-        import_quietly(finish_textured(attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}"));
-        assert_true(texcoord_at(0, 0)[0] == rows[i][0] - rows[i][2] && texcoord_at(2, 0)[0] == rows[i][1] - rows[i][2]);
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"}],\"samplers\":[{\"wrapS\":%d}],"
+                 "\"textures\":[{\"sampler\":0,\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}}],"
+                 "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}]",
+                 view(webp, sizeof webp, 0), i < 4 ? 10497 : 33071);
+        import_quietly(finish_quad(attributes, ",\"material\":0", rest));
+        assert_true(texcoord_at(0, 0)[0] == row[0] - shift && texcoord_at(2, 0)[0] == row[1] - shift);
         assert_true(texcoord_at(2, 1)[1] == 1);
     }
 }
