@@ -20,8 +20,9 @@
 # MASU_TEST_JOBS=N         programs at a time; default: processors + 1, because a program mostly runs one thread and
 #                          is idle for a tenth of its time
 #
-# Frames whose sides, and those of their images at half and quarter size, are no powers of two (160x90, 96x66, 66x48) take
-# what another test has compiled: lavapipe compiles a shader again if a side of an image it reads is one.
+# No side of a frame, of its half or quarter should be a power of two (good: 160x90, 96x66, 66x48):
+# lavapipe compiles a shader once for images of such sides and once for others, and all tests share
+# what is compiled.
 #
 # A test runs in the root of the tree and sees BUILD, MADE, MASU_EXPECT_DIR and, with a driver,
 # MASU_TEST_DRIVER, MASU_DRIVER_INFO (one line: name and version), VK_DRIVER_FILES.

@@ -279,7 +279,8 @@ static void what_is_out_of_sight_casts_its_shadow(void **state) {
     const uint32_t *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
     uint32_t dark = 0;
     for (uint32_t k = 0; k < MID_W * MID_H; k++) dark += normals[k] && sun_share(seen, k) < 0.1;
-    assert_true(sun_share(seen, MID_H / 2 * MID_W + MID_W / 2) < 0.01); /* the origin: on the line to the sun */
+    /* The origin is on the line to the sun. */
+    assert_true(sun_share(seen, MID_H / 2 * MID_W + MID_W / 2) < 0.01);
     /* An ellipse of half axes 1.5 and 1.5 / sin(33.7 degrees) at distance 5.8, approximately. */
     assert_in_range(dark, 300, 4000);
     assert_true(sun_share(seen, 84 * MID_W + 112) > 0.99);
