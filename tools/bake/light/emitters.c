@@ -130,8 +130,8 @@ static void try_axes(const corners *c, uint32_t n, masu_bake_vec3 center,
     *best = (box){{axis[0], axis[1]}, size};
 }
 
-/* Turns the other two axes about axis k to where the box is smallest. A side of that box is along an
- * edge of the part, of which many are not all tried. */
+/* Turns the other two axes about axis k to where the box is smallest. A side of that box is along
+ * an edge of the part, of which many are not all tried. */
 static void tighten(const corners *c, uint32_t n, part *p, int k) {
     masu_bake_vec3 *first = &p->axis[(k + 1) % 3], *second = &p->axis[(k + 2) % 3];
     const masu_bake_vec3 flat[2] = {*first, *second};
