@@ -35,6 +35,19 @@ typedef uint32_t uint;
 #undef T
 #undef F
 
+#define A(k) (operand[k] >= 0 ? v[operand[k]] : values[args[~operand[k]]])
+#define READ_1 {A(0)}
+#define READ_2 {A(0), A(1)}
+#define READ_3 {A(0), A(1), A(2)}
+#define READ_4 {A(0), A(1), A(2), A(3)}
+#define READ_5 {A(0), A(1), A(2), A(3), A(4)}
+#define READ_6 {A(0), A(1), A(2), A(3), A(4), A(5)}
+#define READ_7 {A(0), A(1), A(2), A(3), A(4), A(5), A(6)}
+#define READ_8 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7)}
+#define READ_9 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8)}
+#define READ_11 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8), A(9), A(10)}
+#define READ_12 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8), A(9), A(10), A(11)}
+#define READ_13 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8), A(9), A(10), A(11), A(12)}
 #define CALL_1(f) f(a[0])
 #define CALL_2(f) f(a[0], a[1])
 #define CALL_3(f) f(a[0], a[1], a[2])
@@ -47,9 +60,14 @@ typedef uint32_t uint;
 #define CALL_11(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10])
 #define CALL_12(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11])
 #define CALL_13(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12])
-#define T(name, count, text, code) static double run_##name(const double *a) { return code; }
-#define F(name, count, params, ...) static double run_##name(const double *a) { return CALL_##count(masu_h_##name); }
+#define T(name, count, text, code) case SDFC_##name: { const double a[] = READ_##count; return code; }
+#define F(name, count, params, ...) case SDFC_##name: { const double a[] = READ_##count; return CALL_##count(masu_h_##name); }
+double sdfc_run_op(int op, const int32_t *operand, const double *v, const int *args, const double *values) {
+    switch (op) {
 #include "sdfc/library.inc"
+    default: return 1e30;
+    }
+}
 #undef T
 #undef F
 #undef min
@@ -60,25 +78,25 @@ typedef uint32_t uint;
 #undef real
 
 const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
-    [SDFC_CONST] = {"const", 0, NULL, NULL, NULL, NULL},
-    [SDFC_PARAM] = {"param", 0, NULL, NULL, NULL, NULL},
-    [SDFC_ANCHOR] = {"anchor", 0, NULL, NULL, NULL, NULL},
-    [SDFC_POINT] = {"point", 0, NULL, NULL, NULL, NULL},
-    [SDFC_WORLD] = {"world", 0, NULL, NULL, NULL, NULL},
-    [SDFC_NORMAL] = {"normal", 0, NULL, NULL, NULL, NULL},
-    [SDFC_TRAP] = {"trap", 0, NULL, NULL, NULL, NULL},
-    [SDFC_FOOTPRINT] = {"footprint", 0, NULL, NULL, NULL, NULL},
-    [SDFC_CELL] = {"cell", 0, NULL, NULL, NULL, NULL},
-    [SDFC_INPUT] = {"input", 0, NULL, NULL, NULL, NULL},
-    [SDFC_TIME] = {"time", 0, NULL, NULL, NULL, NULL},
-#define T(name, count, text, code) [SDFC_##name] = {#name, count, text, NULL, NULL, run_##name},
-#define F(name, count, params, ...) [SDFC_##name] = {#name, count, NULL, #params, #__VA_ARGS__, run_##name},
+    [SDFC_CONST] = {"const", 0, NULL, NULL, NULL},
+    [SDFC_PARAM] = {"param", 0, NULL, NULL, NULL},
+    [SDFC_ANCHOR] = {"anchor", 0, NULL, NULL, NULL},
+    [SDFC_POINT] = {"point", 0, NULL, NULL, NULL},
+    [SDFC_WORLD] = {"world", 0, NULL, NULL, NULL},
+    [SDFC_NORMAL] = {"normal", 0, NULL, NULL, NULL},
+    [SDFC_TRAP] = {"trap", 0, NULL, NULL, NULL},
+    [SDFC_FOOTPRINT] = {"footprint", 0, NULL, NULL, NULL},
+    [SDFC_CELL] = {"cell", 0, NULL, NULL, NULL},
+    [SDFC_INPUT] = {"input", 0, NULL, NULL, NULL},
+    [SDFC_TIME] = {"time", 0, NULL, NULL, NULL},
+#define T(name, count, text, code) [SDFC_##name] = {#name, count, text, NULL, NULL},
+#define F(name, count, params, ...) [SDFC_##name] = {#name, count, NULL, #params, #__VA_ARGS__},
 #include "sdfc/library.inc"
 #undef T
 #undef F
-    [SDFC_CALL_MIN] = {"call_min", 0, NULL, NULL, NULL, NULL},
-    [SDFC_CALL_NEAREST] = {"call_nearest", 0, NULL, NULL, NULL, NULL},
-    [SDFC_CALL_USER] = {"call_user", 0, NULL, NULL, NULL, NULL},
+    [SDFC_CALL_MIN] = {"call_min", 0, NULL, NULL, NULL},
+    [SDFC_CALL_NEAREST] = {"call_nearest", 0, NULL, NULL, NULL},
+    [SDFC_CALL_USER] = {"call_user", 0, NULL, NULL, NULL},
 };
 /* clang-format on */
 

@@ -241,8 +241,9 @@ static void trace_probe(void *context, uint32_t item) {
     memset(total, 0, w->sets * sizeof *total);
     uint64_t count = 0, seed = (uint64_t)item * 0x9E3779B97F4A7C15u + 1;
     for (uint32_t r = 0; r < rays; r++) {
-        float u[2], d[3], y[9], light[MASU_PATH_SETS_MAX][3] = {{0}};
+        float u[2], d[3], y[9], light[MASU_PATH_SETS_MAX][3];
         masu_bake_hit first;
+        memset(light, 0, w->sets * sizeof *light);
         masu_path_sample(seed, r, 0, u);
         masu_path_sphere(u, d);
         if (r < paths) {
@@ -259,6 +260,7 @@ static void trace_probe(void *context, uint32_t item) {
         hits[r][3] = far;
         masu_probe_basis(d, y);
         for (uint32_t s = 0; s < w->sets && r < paths; s++) {
+            if (light[s][0] == 0 && light[s][1] == 0 && light[s][2] == 0) continue;
             for (uint32_t k = 0; k < COEFFICIENTS; k++) {
                 total[s][k] += (double)(light[s][k % 3] * y[k / 3]);
             }
