@@ -63,7 +63,7 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
         } else if (i->named) {
             const double seed[9] = {a[18], a[19], a[20], q[0], q[1], q[2], a[21], a[22], a[23]};
             static const int32_t operand[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-            inputs[i->around] = sdfc_run_op(SDFC_cell_seed, operand, seed, NULL, NULL);
+            inputs[i->around] = sdfc_run_op(SDFC_cell_seed, operand, seed);
         }
         double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells);
         if (d < least) number = n;
@@ -81,6 +81,11 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function,
     for (int k = 0; k < f->count; k++) {
         const sdfc_instr *i = &f->instrs[k];
         double r = 1e30;
+        if (!cells) {
+            k += sdfc_run_ops(i, f->count - k, v, p->args, c->values, v + 3 + k);
+            if (k == f->count) break;
+            i = &f->instrs[k];
+        }
         switch (i->op) {
         case SDFC_CALL_MIN:
         case SDFC_CALL_NEAREST: r = run_call(c, p, i, v, variables, cells); break;
@@ -89,7 +94,7 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function,
         case SDFC_NORMAL: r = at ? at->normal[i->aux] : 0; break;
         case SDFC_FOOTPRINT: r = at ? at->footprint : 0; break;
         default:
-            r = sdfc_run_op(i->op, i->operand, v, p->args, c->values);
+            sdfc_run_ops(i, 1, v, p->args, c->values, &r);
             if (cells)
                 note_cell(cells, i->op, value_of(c, p, v, i->operand[0]),
                           value_of(c, p, v, i->operand[2]), r);

@@ -261,7 +261,7 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
         cellular = cellular || c->exprs[a[i]].cellular;
         trapped = trapped || c->exprs[a[i]].trapped;
     }
-    double value = sdfc_run_op(op, (const int32_t[]){0, 1, 2}, values, NULL, NULL);
+    double value = sdfc_run_op(op, (const int32_t[]){0, 1, 2}, values);
     if (constant) return sdfc_number(c, value);
     /* x + 0, x * 1, x * 0: common, since a number stands for a vector of three */
     for (int i = 0; i < 2 && (op == SDFC_add || op == SDFC_mul); i++) {
@@ -301,7 +301,7 @@ void sdfc_evaluate(const sdfc *c, const double *params, double time, double *val
         case SDFC_TRAP:
         case SDFC_FOOTPRINT:
         case SDFC_CELL: values[i] = e->value; break; /* operations replace it if it is evaluated */
-        default: values[i] = sdfc_run_op(e->op, e->a, values, NULL, NULL);
+        default: values[i] = sdfc_run_op(e->op, e->a, values);
         }
     }
 }

@@ -68,10 +68,7 @@ typedef struct sdfc_op_info {
 
 extern const sdfc_op_info sdfc_ops[SDFC_OP_COUNT];
 extern const char *const sdfc_c_prelude;
-/* An operation of library.inc. Its operands: a variable, or ~ the index of an argument, whose value
- * is values[args[index]]. */
-double sdfc_run_op(int op, const int32_t *operand, const double *variables, const int *args,
-                   const double *values);
+double sdfc_run_op(int op, const int32_t *operand, const double *values); /* of library.inc */
 
 /* ---- tokens ---- */
 
@@ -185,6 +182,11 @@ typedef struct sdfc_instr {
                                            to 23; 2: sector 18, of the odd points 19), and of how
                                            many around it */
 } sdfc_instr;
+
+/* Runs the operations of library.inc up to the first other one; returns their number. The value of
+ * argument k is values[args[k]]; results go to `to`, which are later operations' variables. */
+int sdfc_run_ops(const sdfc_instr *instrs, int count, const double *variables, const int *args,
+                 const double *values, double *to);
 
 /* A term: operations that are skipped if the other operand of their join alone determines the
  * result (terms.c). They end with the joining operation; the first term of a join ends with its own

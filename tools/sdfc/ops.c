@@ -35,7 +35,7 @@ typedef uint32_t uint;
 #undef T
 #undef F
 
-#define A(k) (operand[k] >= 0 ? v[operand[k]] : values[args[~operand[k]]])
+#define A(k) (i->operand[k] >= 0 ? v[i->operand[k]] : values[args[~i->operand[k]]])
 #define READ_1 {A(0)}
 #define READ_2 {A(0), A(1)}
 #define READ_3 {A(0), A(1), A(2)}
@@ -60,13 +60,25 @@ typedef uint32_t uint;
 #define CALL_11(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10])
 #define CALL_12(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11])
 #define CALL_13(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12])
-#define T(name, count, text, code) case SDFC_##name: { const double a[] = READ_##count; return code; }
-#define F(name, count, params, ...) case SDFC_##name: { const double a[] = READ_##count; return CALL_##count(masu_h_##name); }
-double sdfc_run_op(int op, const int32_t *operand, const double *v, const int *args, const double *values) {
-    switch (op) {
+#define T(name, count, text, code) case SDFC_##name: { const double a[] = READ_##count; *to = code; break; }
+#define F(name, count, params, ...) case SDFC_##name: { const double a[] = READ_##count; *to = CALL_##count(masu_h_##name); break; }
+int sdfc_run_ops(const sdfc_instr *instrs, int count, const double *v, const int *args, const double *values, double *to) {
+    for (const sdfc_instr *i = instrs; i < instrs + count; i++, to++) {
+        switch (i->op) {
 #include "sdfc/library.inc"
-    default: return 1e30;
+        default: return (int)(i - instrs);
+        }
     }
+    return count;
+}
+
+double sdfc_run_op(int op, const int32_t *operand, const double *values) {
+    sdfc_instr i;
+    double out = 1e30;
+    i.op = op;
+    for (int k = 0; k < sdfc_ops[op].operands; k++) i.operand[k] = operand[k];
+    sdfc_run_ops(&i, 1, values, NULL, NULL, &out);
+    return out;
 }
 #undef T
 #undef F
