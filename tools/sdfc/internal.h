@@ -59,11 +59,14 @@ enum sdfc_op {
     SDFC_OP_COUNT
 };
 
+struct sdfc_instr;
 typedef struct sdfc_op_info {
     const char *name;
     int operands;
     const char *text;          /* template, or NULL */
     const char *params, *body; /* of a function, or NULL */
+    double (*run)(const struct sdfc_instr *instr, const double *variables, const int *args,
+                  const double *values); /* NULL: not of library.inc */
 } sdfc_op_info;
 
 extern const sdfc_op_info sdfc_ops[SDFC_OP_COUNT];

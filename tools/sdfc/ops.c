@@ -60,14 +60,48 @@ typedef uint32_t uint;
 #define CALL_11(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10])
 #define CALL_12(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11])
 #define CALL_13(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12])
-#define T(name, count, text, code) case SDFC_##name: { const double a[] = READ_##count; *to = code; break; }
-#define F(name, count, params, ...) case SDFC_##name: { const double a[] = READ_##count; *to = CALL_##count(masu_h_##name); break; }
-int sdfc_run_ops(const sdfc_instr *instrs, int count, const double *v, const int *args, const double *values, double *to) {
-    for (const sdfc_instr *i = instrs; i < instrs + count; i++, to++) {
-        switch (i->op) {
+#define OPERANDS const sdfc_instr *i, const double *v, const int *args, const double *values
+#define T(name, count, text, code) static double run_##name(OPERANDS) { const double a[] = READ_##count; return code; }
+#define F(name, count, params, ...) static double run_##name(OPERANDS) { const double a[] = READ_##count; return CALL_##count(masu_h_##name); }
 #include "sdfc/library.inc"
-        default: return (int)(i - instrs);
-        }
+#undef T
+#undef F
+#undef min
+#undef max
+#undef mix
+#undef abs
+#undef uint
+#undef real
+
+const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
+    [SDFC_CONST] = {"const", 0, NULL, NULL, NULL, NULL},
+    [SDFC_PARAM] = {"param", 0, NULL, NULL, NULL, NULL},
+    [SDFC_ANCHOR] = {"anchor", 0, NULL, NULL, NULL, NULL},
+    [SDFC_POINT] = {"point", 0, NULL, NULL, NULL, NULL},
+    [SDFC_WORLD] = {"world", 0, NULL, NULL, NULL, NULL},
+    [SDFC_NORMAL] = {"normal", 0, NULL, NULL, NULL, NULL},
+    [SDFC_TRAP] = {"trap", 0, NULL, NULL, NULL, NULL},
+    [SDFC_FOOTPRINT] = {"footprint", 0, NULL, NULL, NULL, NULL},
+    [SDFC_CELL] = {"cell", 0, NULL, NULL, NULL, NULL},
+    [SDFC_INPUT] = {"input", 0, NULL, NULL, NULL, NULL},
+    [SDFC_TIME] = {"time", 0, NULL, NULL, NULL, NULL},
+#define T(name, count, text, code) [SDFC_##name] = {#name, count, text, NULL, NULL, run_##name},
+#define F(name, count, params, ...) [SDFC_##name] = {#name, count, NULL, #params, #__VA_ARGS__, run_##name},
+#include "sdfc/library.inc"
+#undef T
+#undef F
+    [SDFC_CALL_MIN] = {"call_min", 0, NULL, NULL, NULL, NULL},
+    [SDFC_CALL_NEAREST] = {"call_nearest", 0, NULL, NULL, NULL, NULL},
+    [SDFC_CALL_USER] = {"call_user", 0, NULL, NULL, NULL, NULL},
+};
+/* clang-format on */
+
+int sdfc_run_ops(const sdfc_instr *instrs, int count, const double *variables, const int *args,
+                 const double *values, double *to) {
+    for (int k = 0; k < count; k++) {
+        const sdfc_op_info *info = &sdfc_ops[instrs[k].op];
+        if (!info->run) return k;
+        to[k] = info->run(&instrs[k], variables, args, values);
     }
     return count;
 }
@@ -80,36 +114,5 @@ double sdfc_run_op(int op, const int32_t *operand, const double *values) {
     sdfc_run_ops(&i, 1, values, NULL, NULL, &out);
     return out;
 }
-#undef T
-#undef F
-#undef min
-#undef max
-#undef mix
-#undef abs
-#undef uint
-#undef real
-
-const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
-    [SDFC_CONST] = {"const", 0, NULL, NULL, NULL},
-    [SDFC_PARAM] = {"param", 0, NULL, NULL, NULL},
-    [SDFC_ANCHOR] = {"anchor", 0, NULL, NULL, NULL},
-    [SDFC_POINT] = {"point", 0, NULL, NULL, NULL},
-    [SDFC_WORLD] = {"world", 0, NULL, NULL, NULL},
-    [SDFC_NORMAL] = {"normal", 0, NULL, NULL, NULL},
-    [SDFC_TRAP] = {"trap", 0, NULL, NULL, NULL},
-    [SDFC_FOOTPRINT] = {"footprint", 0, NULL, NULL, NULL},
-    [SDFC_CELL] = {"cell", 0, NULL, NULL, NULL},
-    [SDFC_INPUT] = {"input", 0, NULL, NULL, NULL},
-    [SDFC_TIME] = {"time", 0, NULL, NULL, NULL},
-#define T(name, count, text, code) [SDFC_##name] = {#name, count, text, NULL, NULL},
-#define F(name, count, params, ...) [SDFC_##name] = {#name, count, NULL, #params, #__VA_ARGS__},
-#include "sdfc/library.inc"
-#undef T
-#undef F
-    [SDFC_CALL_MIN] = {"call_min", 0, NULL, NULL, NULL},
-    [SDFC_CALL_NEAREST] = {"call_nearest", 0, NULL, NULL, NULL},
-    [SDFC_CALL_USER] = {"call_user", 0, NULL, NULL, NULL},
-};
-/* clang-format on */
 
 const char *const sdfc_c_prelude = prelude_text;
