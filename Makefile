@@ -231,7 +231,7 @@ stiff: all $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the sphere trac
 
 # Shaders and the scene among the seeds are those of the normal build.
 fuzzing = $(more) config=fuzz CC=clang BUILD='$(BUILD)/fuzz' MADE='$(MADE)'
-fuzz fuzz-all: $(GENERATED) $(filter %/blobs.masu,$(SCENES))
+fuzz fuzz-all: $(GENERATED) $(filter %/test_both.masu,$(SCENES))
 fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 	+$(V)$(fuzzing) fuzz-$(FUZZ)
 fuzz-all: ## fuzz every target of tests/fuzz: FUZZ_TIME=600 seconds each

@@ -15,7 +15,7 @@
 enum {
     WIDTH = 640,
     HEIGHT = 360,
-    FRAMES = 30,
+    FRAMES = 8,
     X = 25,
     Y = 17,
     VERTICES = X * Y,
@@ -102,8 +102,8 @@ int main(int argc, char **argv) {
                                  .triangle_count = TRIANGLES};
     CHECK(masu_mesh_create(m, 0, &data, at, &flag, &detail) == MASU_OK);
     for (int i = 0; i < FRAMES; i++) {
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .time = i / 60.0,
-                                 .time_step = 1 / 60.0f};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .time = i / 16.0,
+                                 .time_step = 1 / 16.0f};
         wave(frame.time);
         if (i)
             CHECK(masu_mesh_deform(m, flag, positions[0], normals[0], VERTICES, &detail) ==

@@ -144,7 +144,7 @@ device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.tr
 # Blobs of a few kilobytes, in which most mutations hit something that is looked at, and a real one that is not large:
 # every input is hashed.
 FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace skins code lighting reflections)
-FUZZ_SEEDS_scene += $(firstword $(filter %/blobs.masu,$(SCENES)) $(SCENES))
+FUZZ_SEEDS_scene += $(firstword $(filter %/test_both.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(BUILD)/obj/tests/fuzz/seed_scene.o $(TEST_ARCHIVES)
 	$(link)

@@ -65,9 +65,9 @@ frame 44 screenshot $folder/$1-paused.bmp
 frame 46 key p
 frame 48 key n
 frame 50 screenshot $folder/$1-dusk.bmp
-frame 52 resize 256x144
+frame 52 resize 240x136
 frame 54 screenshot $folder/$1-large.bmp
-frame 56 resize 128x96
+frame 56 resize 120x90
 frame 58 screenshot $folder/$1-small.bmp
 frame 60 quit
 END
@@ -89,7 +89,7 @@ for shot in start driven paused dusk large small; do
     [ "$shot" = start ] || ! cmp -s "$folder/a-$shot.bmp" "$folder/a-start.bmp" || fail "$shot looks like the start"
 done
 [ "$(size "$folder/a-start.bmp") $(size "$folder/a-large.bmp") $(size "$folder/a-small.bmp")" = \
-    "192x108 256x144 128x96" ] || fail "sizes of the pictures"
+    "192x108 240x136 120x90" ] || fail "sizes of the pictures"
 awk '{ for (i = 1; i < NF; i++) if ($i == "distance") exit !($(i + 1) > 3 && $(i + 1) < 20) }' "$folder/a.out" ||
     fail "distance: $(cat "$folder/a.out")"
 # ---- effects ---------------------------------------------------------------------------------------

@@ -93,15 +93,15 @@ cat > "$folder/script" << END
 # 640x360, then another
 frame 9 screenshot $folder/first.bmp
 frame 10 resize 320x180
-frame 19 screenshot $folder/small.bmp
-frame 20 resize 800x450
-frame 29 screenshot $folder/large.bmp
-frame 30 quit
+frame 13 screenshot $folder/small.bmp
+frame 14 resize 648x365
+frame 17 screenshot $folder/large.bmp
+frame 18 quit
 END
 timeout 300 "$examples/loop" "$scenes/test_live.masu" "$folder/script" > "$folder/out" 2> "$folder/err" ||
     fail "loop: $? $(cat "$folder/out" "$folder/err")"
-grep -Eq 'frames 30 rungs 0x[0-9a-f]+ resizes 2 inits 2 format (37|44) validation 0' "$folder/out" || fail "loop: $(cat "$folder/out")"
-[ "$(identify -format '%wx%h ' "$folder"/{first,small,large}.bmp)" = "640x360 320x180 800x450 " ] ||
+grep -Eq 'frames 18 rungs 0x[0-9a-f]+ resizes 2 inits 2 format (37|44) validation 0' "$folder/out" || fail "loop: $(cat "$folder/out")"
+[ "$(identify -format '%wx%h ' "$folder"/{first,small,large}.bmp)" = "640x360 320x180 648x365 " ] ||
     fail "sizes of the pictures"
 for shot in first small large; do
     [ "$(colors "$folder/$shot.bmp")" -gt 100 ] || fail "$shot is hardly a picture"

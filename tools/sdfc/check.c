@@ -23,28 +23,34 @@
 /* ---- running ---- */
 
 /* Which cell the point fell into, for the operations that choose one. */
-static void note_cell(uint64_t *cells, int op, const double *a, double result) {
+static void note_cell(uint64_t *cells, int op, double x, double inverse, double result) {
     double cell;
     switch (op) {
     case SDFC_fold:
     case SDFC_fold_row:
     case SDFC_beside_row:
-    case SDFC_window_row: cell = floor((a[0] - result) * a[2] * 2 + 0.5); break;
-    case SDFC_beside: cell = a[0] < 0; break;
+    case SDFC_window_row: cell = floor((x - result) * inverse * 2 + 0.5); break;
+    case SDFC_beside: cell = x < 0; break;
     case SDFC_polar_angle: cell = floor(result * 1e6 + 0.5); break;
     default: return;
     }
     *cells = (*cells ^ (uint64_t)(int64_t)fmax(fmin(cell, 1e15), -1e15)) * 0x100000001B3u;
 }
 
+static double value_of(const sdfc *c, const sdfc_program *p, const double *v, int operand) {
+    return operand >= 0 ? v[operand] : c->values[p->args[~operand]];
+}
+
 static double run_function(const sdfc *c, const sdfc_program *p, int function,
                            const double point[3], const double *inputs, const sdfc_place_of *at,
                            double *variables, uint64_t *cells);
 
-/* The least of the values at the points, or with `nearest` the number of the point that has it. */
-static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i, const double *a,
-                       bool nearest, double *variables, uint64_t *cells) {
-    double least = 1e30, number = 0;
+/* The least of the values at the points, or the number of the point that has it. */
+static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i, const double *v,
+                       double *variables, uint64_t *cells) {
+    double least = 1e30, number = 0, a[SDFC_OPERANDS_MAX];
+    int count = i->named || i->around ? SDFC_OPERANDS_MAX : 12;
+    for (int j = 0; j < count; j++) a[j] = value_of(c, p, v, i->operand[j]);
     for (int n = 0; n < i->points; n++) {
         double q[3], inputs[SDFC_OPERANDS_MAX];
         for (int j = 0; j < 3; j++) {
@@ -56,13 +62,14 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
             inputs[i->around] = a[18 + (n & 1)];
         } else if (i->named) {
             const double seed[9] = {a[18], a[19], a[20], q[0], q[1], q[2], a[21], a[22], a[23]};
-            inputs[i->around] = sdfc_ops[SDFC_cell_seed].run(seed);
+            static const int32_t operand[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+            inputs[i->around] = sdfc_run_op(SDFC_cell_seed, operand, seed);
         }
         double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells);
         if (d < least) number = n;
         least = d < least ? d : least;
     }
-    return nearest ? number : least;
+    return i->op == SDFC_CALL_NEAREST ? number : least;
 }
 
 static double run_function(const sdfc *c, const sdfc_program *p, int function,
@@ -73,30 +80,28 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function,
     for (int k = 0; k < 3; k++) v[k] = point[k];
     for (int k = 0; k < f->count; k++) {
         const sdfc_instr *i = &f->instrs[k];
-        bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
-        int count = !calls                  ? sdfc_ops[i->op].operands
-                    : i->named || i->around ? SDFC_OPERANDS_MAX
-                                            : 12;
-        double a[SDFC_OPERANDS_MAX], r = 1e30; /* `count` of them: to clear all takes longest */
-        for (int j = 0; j < count; j++) {
-            a[j] = i->operand[j] >= 0 ? v[i->operand[j]] : c->values[p->args[~i->operand[j]]];
+        double r = 1e30;
+        if (!cells) {
+            k += sdfc_run_ops(i, f->count - k, v, p->args, c->values, v + 3 + k);
+            if (k == f->count) break;
+            i = &f->instrs[k];
         }
         switch (i->op) {
         case SDFC_CALL_MIN:
-        case SDFC_CALL_NEAREST:
-            r = run_call(c, p, i, a, i->op == SDFC_CALL_NEAREST, variables, cells);
-            break;
+        case SDFC_CALL_NEAREST: r = run_call(c, p, i, v, variables, cells); break;
         case SDFC_CALL_USER: break;
         case SDFC_INPUT: r = inputs[k]; break;
         case SDFC_NORMAL: r = at ? at->normal[i->aux] : 0; break;
         case SDFC_FOOTPRINT: r = at ? at->footprint : 0; break;
         default:
-            r = sdfc_ops[i->op].run(a);
-            if (cells) note_cell(cells, i->op, a, r);
+            sdfc_run_ops(i, 1, v, p->args, c->values, &r);
+            if (cells)
+                note_cell(cells, i->op, value_of(c, p, v, i->operand[0]),
+                          value_of(c, p, v, i->operand[2]), r);
         }
         v[3 + k] = r;
     }
-    return f->result >= 0 ? v[f->result] : c->values[p->args[~f->result]];
+    return value_of(c, p, v, f->result);
 }
 
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells) {
@@ -116,8 +121,7 @@ void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3],
         if (!p->surface)
             out[k] = c->values[c->materials[part->material].value[k]];
         else
-            out[k] = operand >= 0 ? room[p->functions[p->surface].first_variable + operand]
-                                  : c->values[p->args[~operand]];
+            out[k] = value_of(c, p, room + p->functions[p->surface].first_variable, operand);
     }
 }
 

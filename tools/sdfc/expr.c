@@ -261,7 +261,7 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
         cellular = cellular || c->exprs[a[i]].cellular;
         trapped = trapped || c->exprs[a[i]].trapped;
     }
-    double value = sdfc_ops[op].run(values);
+    double value = sdfc_run_op(op, (const int32_t[]){0, 1, 2}, values);
     if (constant) return sdfc_number(c, value);
     /* x + 0, x * 1, x * 0: common, since a number stands for a vector of three */
     for (int i = 0; i < 2 && (op == SDFC_add || op == SDFC_mul); i++) {
@@ -290,7 +290,6 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
 void sdfc_evaluate(const sdfc *c, const double *params, double time, double *values) {
     for (int i = 0; i < c->expr_count; i++) {
         const sdfc_expr *e = &c->exprs[i];
-        double a[3];
         switch (e->op) {
         case SDFC_CONST: values[i] = e->value; break;
         case SDFC_PARAM: values[i] = params[e->a[0]]; break;
@@ -302,9 +301,7 @@ void sdfc_evaluate(const sdfc *c, const double *params, double time, double *val
         case SDFC_TRAP:
         case SDFC_FOOTPRINT:
         case SDFC_CELL: values[i] = e->value; break; /* operations replace it if it is evaluated */
-        default:
-            for (int k = 0; k < 3; k++) a[k] = values[e->a[k]];
-            values[i] = sdfc_ops[e->op].run(a);
+        default: values[i] = sdfc_run_op(e->op, e->a, values);
         }
     }
 }

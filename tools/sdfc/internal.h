@@ -59,16 +59,19 @@ enum sdfc_op {
     SDFC_OP_COUNT
 };
 
+struct sdfc_instr;
 typedef struct sdfc_op_info {
     const char *name;
     int operands;
     const char *text;          /* template, or NULL */
     const char *params, *body; /* of a function, or NULL */
-    double (*run)(const double *a);
+    double (*run)(const struct sdfc_instr *instr, const double *variables, const int *args,
+                  const double *values); /* NULL: not of library.inc */
 } sdfc_op_info;
 
 extern const sdfc_op_info sdfc_ops[SDFC_OP_COUNT];
 extern const char *const sdfc_c_prelude;
+double sdfc_run_op(int op, const int32_t *operand, const double *values); /* of library.inc */
 
 /* ---- tokens ---- */
 
@@ -92,7 +95,7 @@ typedef struct sdfc_token {
 /* ---- expressions ---- */
 
 typedef struct sdfc_expr {
-    int op, a[3];            /* PARAM: a[0] is its index */
+    int32_t op, a[3];        /* PARAM: a[0] is its index */
     bool dynamic;            /* depends on parameters, time or the anchor */
     bool timed;              /* on parameters or time */
     bool anchored;           /* on the anchor */
@@ -166,6 +169,7 @@ static inline bool sdfc_is_join(int kind) {
 typedef struct sdfc_instr {
     int32_t op;
     int32_t aux;                        /* CALL_MIN: the function, CALL_USER: the block */
+    int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
     int32_t select[3];                  /* CALL_MIN: the first bit of the point's number that
                                            chooses, from 1; 0: none */
     int32_t bits[3];                    /* CALL_MIN: how many bits choose: 0, 1 or 2 */
@@ -180,8 +184,12 @@ typedef struct sdfc_instr {
     int16_t named, around; /* CALL_MIN: whether the function takes its own cell (1: of 18
                                            to 23; 2: sector 18, of the odd points 19), and of how
                                            many around it */
-    int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
+
+/* Runs the operations of library.inc up to the first other one; returns their number. The value of
+ * argument k is values[args[k]]; results go to `to`, which are later operations' variables. */
+int sdfc_run_ops(const sdfc_instr *instrs, int count, const double *variables, const int *args,
+                 const double *values, double *to);
 
 /* A term: operations that are skipped if the other operand of their join alone determines the
  * result (terms.c). They end with the joining operation; the first term of a join ends with its own

@@ -35,6 +35,19 @@ typedef uint32_t uint;
 #undef T
 #undef F
 
+#define A(k) (i->operand[k] >= 0 ? v[i->operand[k]] : values[args[~i->operand[k]]])
+#define READ_1 {A(0)}
+#define READ_2 {A(0), A(1)}
+#define READ_3 {A(0), A(1), A(2)}
+#define READ_4 {A(0), A(1), A(2), A(3)}
+#define READ_5 {A(0), A(1), A(2), A(3), A(4)}
+#define READ_6 {A(0), A(1), A(2), A(3), A(4), A(5)}
+#define READ_7 {A(0), A(1), A(2), A(3), A(4), A(5), A(6)}
+#define READ_8 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7)}
+#define READ_9 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8)}
+#define READ_11 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8), A(9), A(10)}
+#define READ_12 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8), A(9), A(10), A(11)}
+#define READ_13 {A(0), A(1), A(2), A(3), A(4), A(5), A(6), A(7), A(8), A(9), A(10), A(11), A(12)}
 #define CALL_1(f) f(a[0])
 #define CALL_2(f) f(a[0], a[1])
 #define CALL_3(f) f(a[0], a[1], a[2])
@@ -47,8 +60,9 @@ typedef uint32_t uint;
 #define CALL_11(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10])
 #define CALL_12(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11])
 #define CALL_13(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12])
-#define T(name, count, text, code) static double run_##name(const double *a) { return code; }
-#define F(name, count, params, ...) static double run_##name(const double *a) { return CALL_##count(masu_h_##name); }
+#define OPERANDS const sdfc_instr *i, const double *v, const int *args, const double *values
+#define T(name, count, text, code) static double run_##name(OPERANDS) { const double a[] = READ_##count; return code; }
+#define F(name, count, params, ...) static double run_##name(OPERANDS) { const double a[] = READ_##count; return CALL_##count(masu_h_##name); }
 #include "sdfc/library.inc"
 #undef T
 #undef F
@@ -81,5 +95,24 @@ const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
     [SDFC_CALL_USER] = {"call_user", 0, NULL, NULL, NULL, NULL},
 };
 /* clang-format on */
+
+int sdfc_run_ops(const sdfc_instr *instrs, int count, const double *variables, const int *args,
+                 const double *values, double *to) {
+    for (int k = 0; k < count; k++) {
+        const sdfc_op_info *info = &sdfc_ops[instrs[k].op];
+        if (!info->run) return k;
+        to[k] = info->run(&instrs[k], variables, args, values);
+    }
+    return count;
+}
+
+double sdfc_run_op(int op, const int32_t *operand, const double *values) {
+    sdfc_instr i;
+    double out = 1e30;
+    i.op = op;
+    for (int k = 0; k < sdfc_ops[op].operands; k++) i.operand[k] = operand[k];
+    sdfc_run_ops(&i, 1, values, NULL, NULL, &out);
+    return out;
+}
 
 const char *const sdfc_c_prelude = prelude_text;

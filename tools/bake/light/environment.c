@@ -252,25 +252,45 @@ static size_t wrapped_texel(int32_t x, int32_t y, int32_t size) {
     return (size_t)y * (size_t)size + (size_t)x;
 }
 
-typedef void (*texel_of)(const void *texels, size_t at, double out[3]);
+/* Of a bilinear lookup. */
+typedef struct corners {
+    size_t texel[4];
+    double weight[4];
+} corners;
 
-static void packed_texel(const void *texels, size_t at, double out[3]) {
-    masu_bake_unpack_9995(((const uint32_t *)texels)[at], out);
-}
-
-static void plain_texel(const void *texels, size_t at, double out[3]) {
-    for (uint32_t c = 0; c < 3; c++) out[c] = (double)((const float *)texels)[3 * at + c];
-}
-
-static void bilinear(texel_of get, const void *texels, int32_t size, const double square[2],
-                     double out[3]) {
+static inline corners corners_at(int32_t size, const double square[2]) {
     double x = square[0] * size - 0.5, y = square[1] * size - 0.5;
-    int32_t x0 = (int32_t)floor(x), y0 = (int32_t)floor(y);
-    out[0] = out[1] = out[2] = 0;
+    int32_t x0 = (int32_t)x, y0 = (int32_t)y;
+    x0 -= x < x0;
+    y0 -= y < y0;
+    bool inside = x0 >= 0 && y0 >= 0 && x0 + 1 < size && y0 + 1 < size;
+    corners out;
     for (int32_t k = 0; k < 4; k++) {
-        double texel[3], wx = k & 1 ? x - x0 : 1 - (x - x0), wy = k & 2 ? y - y0 : 1 - (y - y0);
-        get(texels, wrapped_texel(x0 + (k & 1), y0 + (k >> 1), size), texel);
-        for (uint32_t c = 0; c < 3; c++) out[c] += wx * wy * texel[c];
+        int32_t i = x0 + (k & 1), j = y0 + (k >> 1);
+        double wx = k & 1 ? x - x0 : 1 - (x - x0), wy = k & 2 ? y - y0 : 1 - (y - y0);
+        out.texel[k] = inside ? (size_t)(j * size + i) : wrapped_texel(i, j, size);
+        out.weight[k] = wx * wy;
+    }
+    return out;
+}
+
+static void packed_at(const uint32_t *texels, uint32_t size, const double square[2],
+                      double out[3]) {
+    const corners at = corners_at((int32_t)size, square);
+    out[0] = out[1] = out[2] = 0;
+    for (uint32_t k = 0; k < 4; k++) {
+        double texel[3];
+        masu_bake_unpack_9995(texels[at.texel[k]], texel);
+        for (uint32_t c = 0; c < 3; c++) out[c] += at.weight[k] * texel[c];
+    }
+}
+
+static void plain_at(const float *texels, uint32_t size, const double square[2], double out[3]) {
+    const corners at = corners_at((int32_t)size, square);
+    out[0] = out[1] = out[2] = 0;
+    for (uint32_t k = 0; k < 4; k++) {
+        const float *texel = texels + 3 * at.texel[k];
+        for (uint32_t c = 0; c < 3; c++) out[c] += at.weight[k] * (double)texel[c];
     }
 }
 
@@ -285,8 +305,8 @@ void masu_bake_environment_at(const masu_blob_environment_map *map, const uint32
         first[1] += count;
     }
     octahedral_square(direction, square);
-    bilinear(packed_texel, texels + first[0], (int32_t)(map->size >> mip), square, near);
-    bilinear(packed_texel, texels + first[1], (int32_t)(map->size >> next), square, far);
+    packed_at(texels + first[0], map->size >> mip, square, near);
+    packed_at(texels + first[1], map->size >> next, square, far);
     for (uint32_t c = 0; c < 3; c++) out[c] = near[c] + (level - mip) * (far[c] - near[c]);
 }
 
@@ -345,8 +365,8 @@ static void trilinear(const pyramid *p, const double d[3], double lod, double ou
     uint32_t level = (uint32_t)fmin(lod, fmax(p->levels - 2.0, 0));
     uint32_t next = level + 1 < p->levels ? level + 1 : level;
     octahedral_square(d, square);
-    bilinear(plain_texel, p->level[level], (int32_t)(p->size >> level), square, near);
-    bilinear(plain_texel, p->level[next], (int32_t)(p->size >> next), square, far);
+    plain_at(p->level[level], p->size >> level, square, near);
+    plain_at(p->level[next], p->size >> next, square, far);
     for (uint32_t c = 0; c < 3; c++) out[c] = near[c] + (lod - level) * (far[c] - near[c]);
 }
 
@@ -433,7 +453,7 @@ void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
             if (mip) {
                 blur(&source, lobe, n, d, light);
             } else {
-                plain_texel(source.level[0], i, light);
+                for (uint32_t c = 0; c < 3; c++) light[c] = (double)source.level[0][3 * i + c];
             }
             uint32_t word = masu_bake_pack_9995(light);
             masu_bake_append(texels, &word, sizeof word);

@@ -15,13 +15,25 @@
 #define ROOM_MAX 4096u   /* variables of a part */
 #define PARTS_MAX MASU_SDFC_PARTS_MAX
 
+/* A part, and the box that holds it. */
+typedef struct boxed {
+    double low[3], high[3];
+    double lipschitz;
+    uint32_t part;
+} boxed;
+
 struct masu_bake_field {
     masu_bake_buffer text;
     masu_sdfc_field *field;
-    const masu_sdfc_part *parts;
+    boxed *parts;
     uint32_t count;
-    double low[3], high[3], longest;
+    boxed all;
+    double longest;
 };
+
+/* fmax and fmin of a libm are calls. NaN in b: a. */
+static double larger(double a, double b) { return b > a ? b : a; }
+static double smaller(double a, double b) { return b < a ? b : a; }
 
 masu_bake_field *masu_bake_field_make(const masu_bake_content *content, const char *source) {
     if (!source || !masu_bake_count(content, MASU_BLOB_SDF)) return NULL;
@@ -40,16 +52,28 @@ masu_bake_field *masu_bake_field_make(const masu_bake_content *content, const ch
         masu_bake_field_release(f);
         return NULL;
     }
-    f->parts = masu_sdfc_field_parts(f->field, &f->count);
-    uint32_t unknown = 0;
-    for (uint32_t i = 0; i < f->count; i++) unknown += f->parts[i].user;
+    uint32_t count, unknown = 0;
+    const masu_sdfc_part *parts = masu_sdfc_field_parts(f->field, &count);
+    f->parts = masu_bake_allocate((count + 1) * sizeof *f->parts);
+    for (uint32_t i = 0; i < count; i++) {
+        boxed *b = &f->parts[f->count];
+        unknown += parts[i].user;
+        if (parts[i].user) continue;
+        for (int k = 0; k < 3; k++) {
+            b->low[k] = parts[i].low[k] - 1e-3;
+            b->high[k] = parts[i].high[k] + 1e-3;
+        }
+        b->lipschitz = fmax(parts[i].lipschitz, 1e-6);
+        b->part = i;
+        f->count++;
+    }
     if (unknown)
         masu_cli_warn(
             "%s: light probes do not know the GLSL of %u parts: they block no light of theirs",
             source, unknown);
     for (int k = 0; k < 3; k++) {
-        f->low[k] = (double)sdf->bounds_min[k];
-        f->high[k] = (double)sdf->bounds_max[k];
+        f->all.low[k] = (double)sdf->bounds_min[k];
+        f->all.high[k] = (double)sdf->bounds_max[k];
     }
     f->longest = (double)sdf->max_distance;
     return f;
@@ -59,28 +83,33 @@ void masu_bake_field_release(masu_bake_field *f) {
     if (!f) return;
     masu_sdfc_field_close(f->field);
     masu_bake_release(&f->text);
+    free(f->parts);
     free(f);
 }
 
 /* The part of the ray within a box. */
-static bool clip(const double low[3], const double high[3], const double o[3], const double d[3],
-                 double *near, double *far) {
+static bool clip(const boxed *box, const double o[3], const double d[3], double *near,
+                 double *far) {
+    double from = *near, to = *far;
     for (int k = 0; k < 3; k++) {
         if (fabs(d[k]) < 1e-12) {
-            if (!(o[k] >= low[k] && o[k] <= high[k])) return false;
+            if (!(o[k] >= box->low[k] && o[k] <= box->high[k])) return false;
             continue;
         }
-        double a = (low[k] - o[k]) / d[k], b = (high[k] - o[k]) / d[k];
-        *near = fmax(*near, fmin(a, b));
-        *far = fmin(*far, fmax(a, b));
+        double a = (box->low[k] - o[k]) / d[k], b = (box->high[k] - o[k]) / d[k];
+        from = larger(from, smaller(a, b));
+        to = smaller(to, larger(a, b));
+        if (!(from < to)) return false;
     }
-    return *near < *far;
+    *near = from;
+    *far = to;
+    return from < to;
 }
 
 /* A part that the ray could hit: not before `until`, and not from `end` on. */
 typedef struct waiting {
-    uint32_t part;
     double until, end;
+    const boxed *part;
 } waiting;
 
 typedef struct met {
@@ -93,16 +122,9 @@ static void list_parts(const masu_bake_field *f, const double o[3], const double
                        double far, met *m) {
     m->count = 0;
     for (uint32_t i = 0; i < f->count; i++) {
-        const masu_sdfc_part *p = &f->parts[i];
-        double low[3], high[3];
         waiting *w = &m->parts[m->count];
-        if (p->user) continue;
-        for (int k = 0; k < 3; k++) {
-            low[k] = p->low[k] - 1e-3;
-            high[k] = p->high[k] + 1e-3;
-        }
-        *w = (waiting){i, near, far};
-        m->count += clip(low, high, o, d, &w->until, &w->end);
+        *w = (waiting){near, far, &f->parts[i]};
+        m->count += clip(w->part, o, d, &w->until, &w->end);
     }
 }
 
@@ -135,10 +157,10 @@ static void fill(const masu_bake_field *f, met *m, const double p[3], const floa
 
 bool masu_bake_field_ray(const masu_bake_field *f, const float origin[3], const float direction[3],
                          float far, masu_bake_hit *hit) {
-    double o[3], d[3], start = 0, end = fmin((double)far, f->longest);
+    double o[3], d[3], start = 0, end = smaller((double)far, f->longest);
     met m;
     for (int k = 0; k < 3; k++) o[k] = (double)origin[k], d[k] = (double)direction[k];
-    if (!clip(f->low, f->high, o, d, &start, &end)) return false;
+    if (!clip(&f->all, o, d, &start, &end)) return false;
     list_parts(f, o, d, start, end, &m);
     for (int i = 0; i < STEPS_MAX && m.count; i++) {
         uint32_t next = 0;
@@ -148,13 +170,13 @@ bool masu_bake_field_ray(const masu_bake_field *f, const float origin[3], const 
         waiting *w = &m.parts[next];
         double t = w->until, enough = NEAR_ENOUGH * (1 + t);
         const double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
-        double away = masu_sdfc_field_run(f->field, w->part, p, m.room) /
-                      fmax(f->parts[w->part].lipschitz, 1e-6);
+        double away =
+            masu_sdfc_field_run(f->field, w->part->part, p, m.room) / w->part->lipschitz;
         if (away < enough && !(t == 0 && away > 0)) {
-            if (hit) fill(f, &m, p, direction, t, t == 0, w->part, hit);
+            if (hit) fill(f, &m, p, direction, t, t == 0, w->part->part, hit);
             return true;
         }
-        w->until = t + fmax(away, enough);
+        w->until = t + larger(enough, away);
         if (w->until >= w->end) *w = m.parts[--m.count];
     }
     return false;

@@ -35,10 +35,16 @@ typedef struct cell {
     double direction[3];
 } cell;
 
+typedef struct equations {
+    double matrix[FUNCTIONS][FUNCTIONS], right[FUNCTIONS][3], square[3];
+} equations;
+
 typedef struct fit {
     cell cells[CELLS];
     double normal[NORMALS][3], light[NORMALS][3]; /* irradiance / pi */
     double weight[NORMALS];
+    double function[NORMALS][FUNCTIONS]; /* that of the lobe apart */
+    equations shared;                    /* without the lobe's */
 } fit;
 
 typedef double coefficients[FUNCTIONS][3];
@@ -52,7 +58,8 @@ static double lobe(double cosine) {
     return cosine > W ? cosine : corner * corner / (4 * W);
 }
 
-static void functions(const double n[3], const double toward[3], double out[FUNCTIONS]) {
+/* All but the lobe. */
+static void functions(const double n[3], double out[FUNCTIONS]) {
     double y2 = n[1] * n[1];
     out[0] = 1;
     for (uint32_t k = 0; k < 3; k++) out[1 + k] = n[k];
@@ -62,7 +69,6 @@ static void functions(const double n[3], const double toward[3], double out[FUNC
     out[7] = 3 * y2 - 1;
     out[8] = n[0] * n[0] - n[2] * n[2];
     out[RING] = (35 * y2 * y2 - 30 * y2 + 3) / 8;
-    out[LOBE] = lobe(dot(n, toward));
 }
 
 /* Points spread evenly: the i-th of `count` over the sphere's upper part, down to the height `low`.
@@ -130,20 +136,20 @@ static void integrate(fit *f) {
 
 /* ---- Least squares --------------------------------------------------------------------------- */
 
-typedef struct equations {
-    double matrix[FUNCTIONS][FUNCTIONS], right[FUNCTIONS][3], square[3];
-} equations;
+static void add_row(const fit *f, uint32_t i, uint32_t j, double value, equations *e) {
+    const double *b = f->function[i], w = f->weight[i] * value;
+    for (uint32_t k = 0; k < j; k++) e->matrix[j][k] += w * b[k];
+    e->matrix[j][j] += w * value;
+    for (uint32_t c = 0; c < 3; c++) e->right[j][c] += w * f->light[i][c];
+}
 
-static void set_up(const fit *f, const double direction[3], equations *e) {
-    memset(e, 0, sizeof *e);
+static void set_up(fit *f) {
+    equations *e = &f->shared;
     for (uint32_t i = 0; i < NORMALS; i++) {
-        double b[FUNCTIONS], w = f->weight[i];
-        functions(f->normal[i], direction, b);
-        for (uint32_t j = 0; j < FUNCTIONS; j++) {
-            for (uint32_t k = 0; k <= j; k++) e->matrix[j][k] += w * b[j] * b[k];
-            for (uint32_t c = 0; c < 3; c++) e->right[j][c] += w * b[j] * f->light[i][c];
-        }
-        for (uint32_t c = 0; c < 3; c++) e->square[c] += w * f->light[i][c] * f->light[i][c];
+        functions(f->normal[i], f->function[i]);
+        for (uint32_t j = 0; j < LOBE; j++) add_row(f, i, j, f->function[i][j], e);
+        for (uint32_t c = 0; c < 3; c++)
+            e->square[c] += f->weight[i] * f->light[i][c] * f->light[i][c];
     }
 }
 
@@ -182,7 +188,11 @@ static double solve(const equations *e, uint32_t count, double lower[FUNCTIONS][
 static double fit_all(const fit *f, const double direction[3], coefficients out) {
     equations e;
     double lower[FUNCTIONS][FUNCTIONS], error = 0;
-    set_up(f, direction, &e);
+    e = f->shared;
+    for (uint32_t i = 0; i < NORMALS; i++) {
+        double value = lobe(dot(f->normal[i], direction));
+        if (value > 0) add_row(f, i, LOBE, value, &e);
+    }
     decompose(&e, FUNCTIONS, lower);
     for (uint32_t c = 0; c < 3; c++) {
         double left = solve(&e, FUNCTIONS, lower, c, out);
@@ -233,6 +243,7 @@ void masu_bake_fit_irradiance(const masu_bake_panorama *p, masu_blob_environment
     }
     fill_cells(p, f);
     integrate(f);
+    set_up(f);
     find_lobe(f, direction, all);
     free(f);
     bool shines = all[LOBE][0] > 0 || all[LOBE][1] > 0 || all[LOBE][2] > 0;
@@ -249,7 +260,8 @@ void masu_bake_irradiance_at(const masu_blob_environment_map *map, const double 
     const float(*sh)[4] = map->sh;
     const double direction[3] = {(double)sh[3][3], (double)sh[4][3], (double)sh[5][3]};
     double b[FUNCTIONS];
-    functions(normal, direction, b);
+    functions(normal, b);
+    b[LOBE] = lobe(dot(normal, direction));
     for (uint32_t c = 0; c < 3; c++) {
         out[c] = b[LOBE] * (double)sh[c][3] + b[RING] * (double)sh[6 + c][3];
         for (uint32_t k = 0; k < HARMONICS; k++) out[c] += b[k] * (double)sh[k][c];
