@@ -16,7 +16,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 160, H = 90, BYTES = W * H * 4, FRAMES = 4, VERTICES = 4096, TRIANGLES = 8192 };
+enum { W = 120, H = 68, BYTES = W * H * 4, FRAMES = 4, VERTICES = 4096, TRIANGLES = 8192 };
 
 static uint8_t pictures[3][FRAMES][BYTES];
 
