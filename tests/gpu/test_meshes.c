@@ -325,7 +325,7 @@ static void slots_are_reused(void **state) {
     double spent[2] = {0, 0};
     for (uint32_t k = 0; k < KINDS; k++) reserve(&d, k, of[k], SLOTS);
     d.desc.picking = 1;
-    d.desc.rungs[0].scale = 0.5f;
+    d.desc.rungs[0].scale = 0.3f;
     open_session(&s, &d);
     for (uint32_t i = 0; i < CHANGES; i++) {
         uint32_t k = random_word(&random) % KINDS, j = random_word(&random) % SLOTS,
