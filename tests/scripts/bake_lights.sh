@@ -145,10 +145,29 @@ glows() { echo "{\"mesh\": $1, \"material\": {\"base_color\": [0, 0, 0], \"emiss
 bakes "$(glows '{"plane": {"size_x": 2, "size_z": 1}}' ', "translate": [5, 6, 7]')" ''
 light 0 | grep -qE '^\S+ \S+ \S+ 95.75 4 2 1 1e-06 -?1 0 0 \| 1540 .*\| 0 $' || fail "a sheet is $(light 0)"
 bakes "$(glows '{"box": {"size": [2, 0.02, 0.5]}}' ', "scale": 2')" ''
-light 0 | grep -qE '^\S+ \S+ \S+ \S+ 4.2 2.1 1.05 0.01 -?1 0 \S+ \| 1540 ' || fail "a flat box is $(light 0)"
+light 0 | awk '{ exit !($5 " " $6 " " $7 " " $8 == "4.2 2.1 1.05 0.01" && $9 * $9 == 1 && $10 * $10 + $11 * $11 < 1e-12 && $13 == 1540) }' ||
+    fail "a flat box is $(light 0)"
 bakes "$(glows '{"box": {"size": [0.1, 2, 0.1]}}')" ''
 light 0 | awk '{ r = $8; h = $10 < 0 ? -$10 : $10; flux = $5 * 12.5664 * r * (r + h); exit !(flux > 3.26 && flux < 3.30 && r > 0.06 && r < 0.078 && h > 0.9 && $13 == 1027) }' ||
     fail "a post is $(light 0)"
+# Turned in any way they have the same half axes in the space of their instance.
+turned=('[0, 0, 0]' '[20, 35, 0]' '[20, 0, 50]' '[0, 35, 50]' '[20, 35, 50]' '[10, 10, 10]' '[80, 20, 33]' '[-45, 45, 45]')
+boxes='' posts=''
+for angles in "${turned[@]}"; do
+    boxes+=${boxes:+, }$(glows '{"box": {"size": [2, 0.02, 0.5]}}' ", \"rotate\": $angles")
+    posts+=${posts:+, }$(glows '{"box": {"size": [0.1, 2, 0.1]}}' ", \"rotate\": $angles")
+done
+bakes "$boxes" ''
+for i in "${!turned[@]}"; do
+    echo "$(light "$i") $(half_v "$i")" | awk '{ exit !($8 > 0.0099 && $8 < 0.0101 && $9 * $9 > 0.998 && $9 * $9 < 1.002 &&
+        $10 * $10 + $11 * $11 < 1e-6 && $18 * $18 + $19 * $19 < 1e-6 && $20 * $20 > 0.0624 && $20 * $20 < 0.0626) }' ||
+        fail "a flat box turned by ${turned[i]} is $(light "$i") $(half_v "$i")"
+done
+bakes "$posts" ''
+for i in "${!turned[@]}"; do
+    light "$i" | awk '{ exit !($8 > 0.06 && $8 < 0.078 && $10 * $10 > 0.81 && $9 * $9 + $11 * $11 < 1e-6) }' ||
+        fail "a post turned by ${turned[i]} is $(light "$i")"
+done
 bakes "$(glows '{"sphere": {"radius": 0.1, "subdivisions": 3}}')" ''
 light 0 | awk '{ exit !($5 > 3.8 && $5 < 4 && $8 > 0.0999 && $8 < 0.1001 && $13 == 1026) }' || fail "a ball is $(light 0)"
 bakes "$(glows '{"sphere": {"radius": 0.1}}' ', "area_light": false')" ''

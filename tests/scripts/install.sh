@@ -167,6 +167,8 @@ sed 's/\\-/-/g' "$share/man/man1/masu.1" > "$folder/page"
 for command in render plan bench conform; do
     "$bin/masu" "$command" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' | sort -u > "$folder/options"
     completes masu "$command" -- | sort -u | diff - "$folder/options"
+    # The parser appends the default: a text that states it too states it twice.
+    if "$bin/masu" "$command" --help | grep -E '\(default.*\(default'; then exit 1; fi
     while read -r option; do
         grep -qF -e "$option" "$folder/page" || { echo "masu.1 has no $option"; exit 1; }
     done < "$folder/options"

@@ -15,6 +15,7 @@
 #include "scene/scene.h"
 #include "support/bind.h"
 #include "support/dry_renderer.h"
+#include "support/random.h"
 #include "support/scene_data.h"
 
 static masu_detail failure; /* of the last call that failed */
@@ -286,6 +287,37 @@ static void rotations_go_the_shorter_way(void **state) {
                                    {.clip = 0, .time = 1.9, .weight = 1.0f}};
     assert_int_equal(pose(both, 2), MASU_OK);
     assert_lid(half / 2, 1, 1, 1);
+}
+
+/* A matrix of any rotation and scales, mirrored too, and its pose are the same. */
+static void a_pose_keeps_its_matrix(void **state) {
+    (void)state;
+    uint64_t seed = 3;
+    uint32_t mirrored = 0;
+    for (uint32_t n = 0; n < 400; n++) {
+        masu_node_pose pose;
+        double square = 0;
+        for (uint32_t k = 0; k < 4; k++) pose.rotation[k] = random_between(&seed, -1, 1);
+        if (n < 16) /* half turns and quarter turns about the axes, too */
+            for (uint32_t k = 0; k < 4; k++) pose.rotation[k] = n >> k & 1 ? 1 : 0;
+        if (!n) pose.rotation[3] = 1;
+        for (uint32_t k = 0; k < 4; k++) square += pose.rotation[k] * pose.rotation[k];
+        for (uint32_t k = 0; k < 4; k++) pose.rotation[k] /= sqrt(square);
+        for (uint32_t k = 0; k < 3; k++) {
+            pose.translation[k] = random_between(&seed, -9, 9);
+            pose.scale[k] = random_between(&seed, 0.1, 3) * (random_between(&seed, 0, 1) < 0.3 ? -1 : 1);
+        }
+        mirrored += pose.scale[0] * pose.scale[1] * pose.scale[2] < 0;
+        float rows[12], again[12];
+        masu_pose_rows(&pose, rows);
+        pose = masu_pose_of(rows);
+        masu_pose_rows(&pose, again);
+        for (uint32_t k = 0; k < 12; k++) {
+            if (fabs((double)again[k] - (double)rows[k]) > 2e-6)
+                fail_msg("%u: rows[%u] is %g, not %g", n, k, (double)again[k], (double)rows[k]);
+        }
+    }
+    assert_true(mirrored > 100 && mirrored < 300);
 }
 
 static void what_cannot_be_posed_changes_nothing(void **state) {
@@ -578,6 +610,7 @@ int main(void) {
         cmocka_unit_test(ends_hold_or_come_round),
         cmocka_unit_test(clips_are_blended_by_weight),
         cmocka_unit_test(rotations_go_the_shorter_way),
+        cmocka_unit_test(a_pose_keeps_its_matrix),
         cmocka_unit_test(what_cannot_be_posed_changes_nothing),
         cmocka_unit_test(a_slot_has_matrices_of_both_frames),
         cmocka_unit_test(a_skin_is_where_its_joints_are),

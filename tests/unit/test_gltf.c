@@ -972,6 +972,79 @@ static void older_versions_are_refused(void **state) {
     refused(write_bytes("x.glb", head, sizeof head), NULL, "glTF 1");
 }
 
+/* Beyond the limit, as NaN: 0 in both axes. The others are moved by whole periods around the middle of their range. */
+static void coordinates_that_cannot_be_used_are_0(void **state) {
+    (void)state;
+    const float most = 16384, beyond = nextafterf(most, INFINITY);
+    const float bad[][2] = {{beyond, 0.5f}, {0.5f, -beyond}, {NAN, 0.5f}, {0.5f, INFINITY}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const float uv[8] = {0.25f, 0.5f, most, 0.5f, bad[i][0], bad[i][1], 0.25f, -most};
+        begin_quad();
+        char attributes[64];
+        snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(uv, "VEC2", 4, 2));
+        import_warned(finish_textured(attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}"),
+                      "texture coordinates set to 0");
+        const float *a = texcoord_at(0, 0), *b = texcoord_at(2, 0), *lost = texcoord_at(2, 1), *c = texcoord_at(0, 1);
+        assert_true(lost[0] == 0 && lost[1] == 0);
+        assert_true(b[0] - a[0] == most - 0.25f && a[1] - c[1] == most + 0.5f && b[1] == a[1] && c[0] == a[0]);
+    }
+}
+
+/* Coordinates of a repeated texture stay if they are from -2 to 3, of a clamped one always. */
+static void coordinates_near_0_are_not_moved(void **state) {
+    (void)state;
+    const float rows[][3] = {{-2, 0, 0}, {nextafterf(-2, -3), 0, -1}, {1, 3, 0}, {1, nextafterf(3, 4), 2}};
+    for (size_t i = 0; i < 8; i++) {
+        const float *row = rows[i % 4], shift = i < 4 ? row[2] : 0;
+        const float uv[8] = {row[0], 0, row[1], 0, row[1], 1, row[0], 1};
+        begin_quad();
+        char attributes[64], rest[512];
+        snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(uv, "VEC2", 4, 2));
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"}],\"samplers\":[{\"wrapS\":%d}],"
+                 "\"textures\":[{\"sampler\":0,\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}}],"
+                 "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}]",
+                 view(webp, sizeof webp, 0), i < 4 ? 10497 : 33071);
+        import_quietly(finish_quad(attributes, ",\"material\":0", rest));
+        assert_true(texcoord_at(0, 0)[0] == row[0] - shift && texcoord_at(2, 0)[0] == row[1] - shift);
+        assert_true(texcoord_at(2, 1)[1] == 1);
+    }
+}
+
+/* Control characters and bytes that are not UTF-8 become '?'; of each form its first and its last character stay. */
+static void names_are_utf8(void **state) {
+    (void)state;
+    static const char *const names[][2] = {
+        {" a~", " a~"},
+        {"a\x1f\x7f", "a??"},
+        {"\xc2\x80\xdf\xbf", NULL},
+        {"\x80|\xc1\xbf", "?|??"},
+        {"\xe0\xa0\x80\xed\x9f\xbf\xee\x80\x80\xef\xbf\xbf", NULL},
+        {"\xe0\x9f\xbf|\xed\xa0\x80|\xed\xbf\xbf", "???|???|???"},
+        {"\xf0\x90\x80\x80\xf4\x8f\xbf\xbf", NULL},
+        {"\xf0\x8f\xbf\xbf|\xf4\x90\x80\x80|\xf8\x88\x80\x80\x80", "????|????|?????"},
+        {"a\xc3", "a?"},
+        {"\xe2\x82|\xe2\x82\xac", "??|\xe2\x82\xac"},
+    };
+    masu_bake_content content = {0};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        uint32_t at = masu_bake_name(&content, names[i][0], strlen(names[i][0]));
+        assert_string_equal(masu_bake_name_text(&content, at), names[i][names[i][1] ? 1 : 0]);
+    }
+    char full[MASU_BLOB_NAME_MAX + 2];
+    memset(full, 'a', sizeof full - 1);
+    full[sizeof full - 1] = 0;
+    uint32_t at = masu_bake_name(&content, full, MASU_BLOB_NAME_MAX);
+    assert_true(strlen(masu_bake_name_text(&content, at)) == MASU_BLOB_NAME_MAX && !content.names_cut);
+    at = masu_bake_name(&content, full, MASU_BLOB_NAME_MAX + 1);
+    assert_true(strlen(masu_bake_name_text(&content, at)) == MASU_BLOB_NAME_MAX && content.names_cut == 1);
+    memcpy(full + MASU_BLOB_NAME_MAX - 1, "\xc3\xa9", 2); /* cut before the character, not within it */
+    at = masu_bake_name(&content, full, MASU_BLOB_NAME_MAX + 1);
+    assert_true(strlen(masu_bake_name_text(&content, at)) == MASU_BLOB_NAME_MAX - 1 && content.names_cut == 2);
+    assert_int_equal(masu_bake_name(&content, "", 0), MASU_BLOB_NONE);
+    masu_bake_content_release(&content);
+}
+
 /* ---- Invalid files --------------------------------------------------------------------------- */
 
 static void names_with_percent_signs(void **state) {
@@ -1035,6 +1108,9 @@ int main(void) {
         cmocka_unit_test(meshopt_unpacks),
         cmocka_unit_test(draco_unpacks),
         cmocka_unit_test(coordinates_are_of_the_set_and_turned),
+        cmocka_unit_test(coordinates_that_cannot_be_used_are_0),
+        cmocka_unit_test(coordinates_near_0_are_not_moved),
+        cmocka_unit_test(names_are_utf8),
         cmocka_unit_test(maps_of_other_coordinates_are_told),
         cmocka_unit_test(coats_have_pictures_of_their_own),
         cmocka_unit_test(colours_of_vertices_become_materials),

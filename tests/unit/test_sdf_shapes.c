@@ -103,6 +103,9 @@ static const struct {
     {"mandelbox(7, 2.8)", ESTIMATE, {0, 0, 0}},
     {"julia((-0.2, 0.6, 0.2), 0.2, 8)", ESTIMATE, {0.05, 0.02, 0}},
     {"julia((0.3, 0.5, 0), 0, 6)", ESTIMATE, {0.05, 0.02, 0}},
+    {"mandelbulb(8, 3)", ESTIMATE, {0.05, 0.02, 0}},
+    {"mandelbulb(3, 9)", ESTIMATE, {0.05, 0.02, 0}},
+    {"rotate((0, 1, 0), 0.5 * pi, translate((3, 0, 0), sphere(0.5)))", EXACT, {0, 0, -3}},
 };
 #define PI 3.14159265358979323846
 
@@ -252,6 +255,53 @@ static void every_shape_is_what_its_table_says(void **state) {
         }
         field_stop(&r);
     }
+}
+
+/* A turned shape is bounded where it was; an axis without an end does not take the bounds of the others. */
+static void turned_bounds_are_tight(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double low, high; /* in y */
+    } rows[] = {
+        {"repeat((2, 0, 2), translate((0, 1, 0), sphere(0.5)))", 0.5, 1.5},
+        {"rotate((0, 1, 0), 0.3, repeat((2, 0, 2), translate((0, 1, 0), sphere(0.5))))", 0.5, 1.5},
+        {"rotate((1, 0, 0), 0.5 * pi, box((1, 2, 3)))", -3, 3},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        field r;
+        char text[256];
+        snprintf(text, sizeof text, "material m { albedo 1 } part a = %s;", rows[i].text);
+        must_start(&r, text);
+        const sdfc_box *b = &facts(&r, 0)->box;
+        bool tight = fabs(b->low[1] - rows[i].low) < 1e-9 && fabs(b->high[1] - rows[i].high) < 1e-9;
+        if (!tight) fail_msg("%s: from %g to %g", text, b->low[1], b->high[1]);
+        field_stop(&r);
+    }
+}
+
+static double value_of(const char *shape, double x, double y, double z) {
+    field r;
+    char text[256];
+    const double p[3] = {x, y, z};
+    snprintf(text, sizeof text, "material m { albedo 1 } part a = %s;", shape);
+    must_start(&r, text);
+    double v = field_value(&r, 0, p);
+    field_stop(&r);
+    return v;
+}
+
+/* There the orbit escapes in two levels, so that more change nothing; two themselves have the constant 1, and with it a
+ * factor of 1.3. */
+static void a_bulb_of_two_levels_has_a_factor(void **state) {
+    (void)state;
+    double two = value_of("mandelbulb(8, 2)", 1.12, 0, 0), three = value_of("mandelbulb(8, 3)", 1.12, 0, 0);
+    double r = 1.12, slope = 8 * pow(r, 7) + 1, z = sqrt(pow(r, 16) + r * r);
+    slope = 8 * pow(z, 7) * fmax(1, fabs(sin(8 * atan2(r, pow(r, 8)))) * fmin(z / r, 9)) * slope + 1;
+    assert_true(three > 0.02 && fabs(two / three - 1.3) < 1e-9);
+    assert_true(value_of("mandelbulb(8, 16)", 1.12, 0, 0) == three);
+    double far = pow(z, 8); /* + r, in another direction */
+    assert_true(fabs(three / (0.5 * log(far) * far / slope) - 1) < 1e-3);
 }
 
 /* ---- cells and blends, by formulas ---- */
@@ -633,6 +683,8 @@ static void other_scenes_pay_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_is_what_its_table_says),
+        cmocka_unit_test(turned_bounds_are_tight),
+        cmocka_unit_test(a_bulb_of_two_levels_has_a_factor),
         cmocka_unit_test(cells_that_differ_are_all_there),
         cmocka_unit_test(sectors_that_differ_are_all_there),
         cmocka_unit_test(a_blend_does_not_depend_on_the_order),

@@ -795,6 +795,9 @@ static void mistakes_name_their_place(void **state) {
          "-1, -1), (1, 1, 1) "
          "lipschitz 1;",
          "x.sdf:1:32: masu_param(1): the scene has 1 parameter, counted from 0"},
+        {"param k = 0.5 [0, 1]; part a = glsl { return length(p) - masu_param(0) - masu_param ( 1 ); "
+         "} bounds (-1, -1, -1), (1, 1, 1) lipschitz 1;",
+         "x.sdf:1:32: masu_param(1): the scene has 1 parameter, counted from 0"},
         {"part a = glsl { return 1.0; ", "x.sdf:1:15: expected a \"}\" for this \"{\""},
         {"for i in 0..9 { part a = sphere(1);",
          "x.sdf:1:36: expected param, let, shape, def, material, "

@@ -527,7 +527,7 @@ static const masu_option rows[] = {
     MASU_REAL(masu_render_options, aperture, "aperture", "METRES", 0.0, 1e6,
               "diameter of the lens, for depth of field (default 0: everything is sharp)"),
     MASU_REAL(masu_render_options, focus, "focus", "METRES", 1e-6, 1e9,
-              "distance of the sharp plane, with --aperture (default 10)"),
+              "distance of the sharp plane, with --aperture"),
     MASU_REAL(masu_render_options, vignette, "vignette", "SHARE", 0.0, 1.0,
               "darken the corners by this fraction (default 0)"),
     MASU_REAL(masu_render_options, brightness, "brightness", "STOPS", -8.0, 8.0,

@@ -128,9 +128,11 @@ static void try_axes(const corners *c, uint32_t n, masu_bake_vec3 center,
     *best = (box){{axis[0], axis[1]}, size};
 }
 
-/* Turns two axes about the third to where the box is smallest. A side of that box is along an
+/* Turns the other two axes about axis k to where the box is smallest. A side of that box is along an
  * edge of the part, of which many are not all tried. */
-static void tighten(const corners *c, uint32_t n, part *p, const masu_bake_vec3 flat[2]) {
+static void tighten(const corners *c, uint32_t n, part *p, int k) {
+    masu_bake_vec3 *first = &p->axis[(k + 1) % 3], *second = &p->axis[(k + 2) % 3];
+    const masu_bake_vec3 flat[2] = {*first, *second};
     box best = {{flat[0], flat[1]}, DBL_MAX};
     size_t tried = 0;
     for (size_t i = 0; i < c->count && tried < EDGES_TRIED; i++) {
@@ -148,8 +150,8 @@ static void tighten(const corners *c, uint32_t n, part *p, const masu_bake_vec3 
         masu_bake_vec3 axis[2] = {along(flat, angle), along(flat, angle + MASU_BAKE_PI / 2)};
         try_axes(c, n, p->center, axis, &best);
     }
-    p->axis[0] = best.axis[0];
-    p->axis[1] = best.axis[1];
+    *first = best.axis[0];
+    *second = best.axis[1];
 }
 
 static void measure(const corners *c, uint32_t n, part *p) {
@@ -182,29 +184,9 @@ static void measure(const corners *c, uint32_t n, part *p) {
         }
     }
     principal_axes(m, p->axis);
-    for (int k = 0; k < 3; k++) p->half[k] = half_along(c, n, p->center, p->axis[k], &middle[k]);
-    for (int i = 0; i < 2; i++) { /* longest first */
-        for (int k = 0; k < 2; k++) {
-            if (p->half[k] >= p->half[k + 1]) continue;
-            double size = p->half[k];
-            masu_bake_vec3 axis = p->axis[k];
-            p->half[k] = p->half[k + 1];
-            p->axis[k] = p->axis[k + 1];
-            p->half[k + 1] = size;
-            p->axis[k + 1] = axis;
-        }
-    }
-    /* The principal axes of a square or a cube are arbitrary. */
-    for (int k = 2; k >= 0; k -= 2) {
-        masu_bake_vec3 flat[2] = {p->axis[k == 2 ? 0 : 1], p->axis[k == 2 ? 1 : 2]};
-        masu_bake_vec3 kept = p->axis[k];
-        tighten(c, n, p, flat);
-        if (k == 0) {
-            p->axis[2] = p->axis[1];
-            p->axis[1] = p->axis[0];
-            p->axis[0] = kept;
-        }
-    }
+    /* The principal axes of a square or a cube are arbitrary, and those of a box turn with the
+     * diagonals of its triangles. */
+    for (int k = 2; k >= 0; k--) tighten(c, n, p, k);
     for (int k = 0; k < 3; k++) p->half[k] = half_along(c, n, p->center, p->axis[k], &middle[k]);
     for (int k = 0; k < 3; k++) p->center = masu_bake_mad(p->center, p->axis[k], middle[k]);
     for (int k = 0; k < 2; k++) {
