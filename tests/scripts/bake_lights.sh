@@ -163,6 +163,23 @@ for i in "${!turned[@]}"; do
         $10 * $10 + $11 * $11 < 1e-6 && $18 * $18 + $19 * $19 < 1e-6 && $20 * $20 > 0.0624 && $20 * $20 < 0.0626) }' ||
         fail "a flat box turned by ${turned[i]} is $(light "$i") $(half_v "$i")"
 done
+# A flat ellipsoid: half axes 1, 0.4 and 0.1. It has more edges than are tried, and none is along an axis.
+awk -v n=24 -v m=12 'BEGIN {
+    for (i = 0; i <= m; i++) for (k = 0; k < n; k++) { t = i * 3.14159265 / m; p = k * 6.2831853 / n
+        printf "v %.6f %.6f %.6f\n", sin(t) * cos(p), 0.1 * cos(t), 0.4 * sin(t) * sin(p) }
+    for (i = 0; i < m; i++) for (k = 1; k <= n; k++) { a = i * n + k; b = i * n + k % n + 1
+        if (i > 0) print "f", a, b, a + n
+        if (i < m - 1) print "f", b, b + n, a + n } }' > "$folder/pebble.obj"
+pebbles=''
+for angles in "${turned[@]}"; do
+    pebbles+="${pebbles:+, }{\"file\": \"pebble.obj\", \"material\": {\"base_color\": [0, 0, 0], \"emissive\": [4, 2, 1]}, \"rotate\": $angles}"
+done
+bakes "$pebbles" ''
+for i in "${!turned[@]}"; do
+    echo "$(light "$i") $(half_v "$i")" | awk '{ exit !($13 == 1540 && $8 > 0.099 && $8 < 0.101 &&
+        $9 * $9 > 0.98 && $9 * $9 < 1.02 && $20 * $20 > 0.156 && $20 * $20 < 0.164) }' ||
+        fail "an ellipsoid turned by ${turned[i]} is $(light "$i") $(half_v "$i")"
+done
 bakes "$posts" ''
 for i in "${!turned[@]}"; do
     light "$i" | awk '{ exit !($8 > 0.06 && $8 < 0.078 && $10 * $10 > 0.81 && $9 * $9 + $11 * $11 < 1e-6) }' ||

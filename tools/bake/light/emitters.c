@@ -97,7 +97,9 @@ static void principal_axes(double m[3][3], masu_bake_vec3 axis[3]) {
     for (int n = 0; n < 60; n++) {
         int p = n % 3, q = (p + 1) % 3;
         if (fabs(m[p][q]) < 1e-300) continue;
-        double angle = 0.5 * atan2(2 * m[p][q], m[q][q] - m[p][p]), c = cos(angle), s = sin(angle);
+        double sign = m[q][q] < m[p][p] ? -1 : 1; /* at most 45 degrees: else it may never end */
+        double angle = 0.5 * atan2(sign * 2 * m[p][q], sign * (m[q][q] - m[p][p]));
+        double c = cos(angle), s = sin(angle);
         for (int k = 0; k < 3; k++) {
             double a = m[k][p], b = m[k][q];
             m[k][p] = c * a - s * b;
@@ -128,13 +130,14 @@ static void try_axes(const corners *c, uint32_t n, masu_bake_vec3 center,
     *best = (box){{axis[0], axis[1]}, size};
 }
 
-/* Turns the other two axes about axis k to where the box is smallest. A side of that box is along an
- * edge of the part, of which many are not all tried. */
+/* Turns the other two axes about axis k to where the box is smallest. A side of that box is along
+ * an edge of the part, of which many are not all tried. */
 static void tighten(const corners *c, uint32_t n, part *p, int k) {
     masu_bake_vec3 *first = &p->axis[(k + 1) % 3], *second = &p->axis[(k + 2) % 3];
     const masu_bake_vec3 flat[2] = {*first, *second};
-    box best = {{flat[0], flat[1]}, DBL_MAX};
+    box best = {.size = DBL_MAX};
     size_t tried = 0;
+    try_axes(c, n, p->center, flat, &best);
     for (size_t i = 0; i < c->count && tried < EDGES_TRIED; i++) {
         if (c->part[i] != n) continue;
         masu_bake_vec3 edge = masu_bake_sub(c->at[i % 3 == 2 ? i - 2 : i + 1], c->at[i]);
