@@ -63,6 +63,10 @@ not_swiftshader+="test_specular_filters test_specular_sdf test_specular_textures
 not_swiftshader+="test_sprites test_temporal test_terms test_texture_order test_transparents test_truth "
 not_swiftshader+="test_viewports test_window "
 
+# What these draw takes less than to compile it. On the first driver Mesa's rasteriser compiles them as lavapipe 25 does
+# everything (tests/drivers.sh): for vectors of 128 bits, without its optimiser.
+compiled=" test_cli test_conform test_devices test_gltf_pictures test_gpu_av test_reference test_upscale "
+
 # A rasteriser's own threads are in the way of the programs beside it: a tenth of the time.
 export LP_NUM_THREADS=${LP_NUM_THREADS-0}
 export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
@@ -135,6 +139,10 @@ run() {
     # shellcheck disable=SC1090
     [ "$kind" != gpu ] || . "$results/$driver.env"
     name=$(basename "$program" .sh)
+    if [[ $kind$driver == gpusystem && $compiled == *" $name "* ]]; then
+        export LP_NATIVE_VECTOR_WIDTH=128 GALLIVM_PERF=nopt MESA_SHADER_CACHE_DIR=$cache/system-128
+        mkdir -p "$MESA_SHADER_CACHE_DIR"
+    fi
     log=$results/$driver/$name.log
     mkdir -p "$results/$driver"
     local seeds=SEEDS_$name

@@ -301,16 +301,16 @@ static void reflections_have_an_error_of_their_own(void **state) {
     (void)state;
     const char *scene = scene_path("test_reflections");
     uint32_t count, again;
-    /* The base, no reflections, and the same at half size have the numbers 0, 10 and 11. */
-    for (int i = 0; i < 3; i++) {
-        assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard %d/24 --validate"
+    /* The base and no reflections have the numbers 0 and 10; the same at half size has 11. */
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard %s --validate"
                                " --truth %s/mirror.png --out %s/mirror%d",
-                               scene, i ? 9 + i : 0, scratch, scratch, i),
+                               scene, i ? "11/24" : "0/10", scratch, scratch, i),
                          0);
     }
     assert_true(is_in_scratch("mirror.pfm") && is_in_scratch("mirror.specular.pfm"));
-    assert_int_equal(bench("--merge %s/mirror0 %s/mirror1 %s/mirror2 --out %s/mirrors", scratch,
-                           scratch, scratch, scratch),
+    assert_int_equal(bench("--merge %s/mirror0 %s/mirror1 --out %s/mirrors", scratch, scratch,
+                           scratch),
                      0);
     masu_row *rows = rows_of("mirrors", &count);
     assert_int_equal(count, 3);

@@ -164,7 +164,7 @@ static void a_rotation_is_that_of_the_picture(void **state) {
     compare(0, about(0, 1, 0, -37), "", 0.01, "-37 degrees about +Y");
     if (!whole_run()) return;
     compare(0, about(0.6, 0, 0.8, 90), "", 0.02, "tilted by 90 degrees");
-    frames = 50;
+    frames = 24;
     compare(0, about(0, 1, 0, 90), "\"reflections\": {}, \"bounce\": {\"spacing\": 0.7},", 0.01,
             "with a bounce");
     frames = 4;

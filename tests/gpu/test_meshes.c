@@ -16,7 +16,7 @@
 
 static masu_detail failure; /* of the last call that failed */
 
-enum { W = 160, H = 90, BYTES = W * H * 4, FRAMES = 4, VERTICES = 4096, TRIANGLES = 8192 };
+enum { W = 120, H = 68, BYTES = W * H * 4, FRAMES = 4, VERTICES = 4096, TRIANGLES = 8192 };
 
 static uint8_t pictures[3][FRAMES][BYTES];
 
@@ -325,7 +325,7 @@ static void slots_are_reused(void **state) {
     double spent[2] = {0, 0};
     for (uint32_t k = 0; k < KINDS; k++) reserve(&d, k, of[k], SLOTS);
     d.desc.picking = 1;
-    d.desc.rungs[0].scale = 0.5f;
+    d.desc.rungs[0].scale = 0.3f;
     open_session(&s, &d);
     for (uint32_t i = 0; i < CHANGES; i++) {
         uint32_t k = random_word(&random) % KINDS, j = random_word(&random) % SLOTS,

@@ -294,13 +294,13 @@ static void smoke_leaves_no_trail(void **state) {
                               .edge = 0.5f,
                               .color = {0.3f, 0.6f, 0.9f}};
         masu_frame_desc f = {MASU_FRAME_DESC, .particles = &puff, .particle_count = 1};
-        frames(&s, 60, f, b.rgba);
+        frames(&s, 40, f, b.rgba);
         for (int k = 1; k <= 20; k++) {
             puff.position[0] = -0.5 + 0.05 * k;
             frames(&s, 1, f, NULL);
         }
         frames(&s, 8, f, a.rgba);
-        frames(&s, trials(120, 120, 60), f, truth.rgba);
+        frames(&s, trials(120, 60, 60), f, truth.rgba);
         uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
         print_message("  scale %.1f: %u of %u pixels are more than 2 of 255 off\n",
                       half ? 0.5 : 1.0, off, all);
@@ -321,11 +321,11 @@ static void sky_that_is_uncovered_shows_no_pole(void **state) {
         move_instance(&s, "ball", 0.0f, 1.0f, -3.0f, 0.3f);
         for (int k = 0; k <= 12; k++) {
             camera.position[0] = k * metres;
-            frames(&s, k ? 1 : 60, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera},
+            frames(&s, k ? 1 : 40, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera},
                    k ? a.rgba : b.rgba);
         }
         frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .cut = 1}, NULL);
-        frames(&s, trials(150, 150, 75), (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera},
+        frames(&s, trials(150, 75, 75), (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera},
                truth.rgba);
         last.scene = NULL;
         uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
