@@ -151,8 +151,14 @@ $(foreach c,$(ALL_CLASSES),$(if $(call object_like,$c),$(eval $(call same_object
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;
 # hence the pragmas.
-SCENE_TEXTS := $(patsubst shaders/%,$(MADE)/gen/glsl/%,$(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h \
-    shaders/*/*.glsl)) $(MADE)/gen/bindings.h \
+# Of the headers only those that these shaders or a scene's own text include: masu-bake writes all texts for each scene.
+SCENE_INCLUDES := $(shell awk -v from='$(SCENE_SHADERS) sdf/hand_written.glsl' ' \
+    FNR == 1 { name = substr(FILENAME, 9); there[name] = 1 } \
+    /^ *.include "/ { split($$0, quoted, "\""); uses[name] = uses[name] " " quoted[2] } \
+    END { n = split(from, todo); for (i = 1; i <= n; i++) { count = split(uses[todo[i]], used); \
+        for (k = 1; k <= count; k++) if (there[used[k]] && !seen[used[k]]++) todo[++n] = used[k]; \
+        print "shaders/" todo[i] } }' $(addprefix shaders/,$(SCENE_SHADERS)) $(wildcard shaders/*/*.h shaders/*/*.glsl))
+SCENE_TEXTS := $(patsubst shaders/%,$(MADE)/gen/glsl/%,$(sort $(SCENE_INCLUDES))) $(MADE)/gen/bindings.h \
     $(foreach p,$(PUSHES),$(if $(filter $(p).%,$(SCENE_SHADERS)),$(MADE)/gen/push/$(p).h))
 
 $(MADE)/gen/scene_sources.h: $(SCENE_TEXTS) $(MADE)/gen/scene_texts.list

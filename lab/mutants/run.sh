@@ -1,5 +1,5 @@
 #!/bin/bash
-# run.sh [RESULTS]: tries the mutants of drawn.tsv (draw.awk) in turn, in a copy of the tree below $MUTANTS_DIR, and
+# run.sh [RESULTS]: tries the mutants of $DRAWN (draw.awk) in turn, in a copy of the tree below $MUTANTS_DIR, and
 # appends `number operator verdict by seconds` to RESULTS; those that it lists already are not tried again.
 #
 # Verdicts: caught (by the first test that failed, or that could not be built), survived, no-compile (the next one of
@@ -8,6 +8,7 @@
 # shader that they hold. After a mutant what it changed is copied back. Needs a tree that is built; changes nothing in
 # it. After a change of the tree remove $MUTANTS_DIR.
 #
+# DRAWN=lab/mutants/drawn.tsv
 # WANTED=12        of each operator, with a verdict other than no-compile
 # ONLY='3 17'      these numbers
 # DRIVERS=system   drivers of the GPU tests, as of `make gpu`; none: only the unit tests and scripts of the subject
@@ -18,7 +19,7 @@ cd "$(dirname "$0")/../.." || exit 1
 tree=$PWD
 folder=${MUTANTS_DIR:-/tmp/masu-mutants}
 results=$(realpath -m "${1:-build/mutants.tsv}")
-drawn=$tree/lab/mutants/drawn.tsv
+drawn=$(realpath "${DRAWN:-lab/mutants/drawn.tsv}")
 work=$folder/work
 export MASU_TEST_TIMEOUT=${MASU_TEST_TIMEOUT:-240} MASU_TEST_JOBS=1
 export MASU_SPIRV_CACHE=$folder/spirv
@@ -46,9 +47,10 @@ tests_of() {
     case $1 in
         src/scene/material.h) unit="first_look shared_layout" gpu="frame textures reserve transparents" ;;
         src/scene/check_* | src/scene/reader.* | src/scene/scene.*)
-            unit="scene_rules scene scene_textures code trace" gpu=load ;;
+            unit="scene_rules scene_limits scene scene_textures animation code trace" gpu=load ;;
+        src/scene/punctual_light*) unit=lights gpu="small_lamps area_lights lights" ;;
         src/scene/*) unit="cull code lights trace trace_textures models animation surface scene_query scene_textures" gpu="culling lods trace skin" ;;
-        src/plan/*) unit="plan plan_specular desc needs split" gpu="frame output resize reserve" ;;
+        src/plan/*) unit="plan plan_specular desc needs split" gpu="frame output resize reserve shadow_frames" ;;
         src/quality/*) unit="governor ladder desc device_class pacing governor_loads bench_rungs" gpu="governor ladder" ;;
         src/device/*) unit="unpack code plan upload" gpu="frame load resize pool memory_kinds live_textures" ;;
         src/frame/sky* | src/frame/sun_sky*) unit="sky environment" gpu="sky picture_sky" ;;
@@ -74,8 +76,8 @@ tests_of() {
         tools/bake/light/*) unit="probes environment emission picture_path sky bake_probes bake_lights" gpu="probes picture_sky" ;;
         tools/bake/texture/*) unit="image texels masks bump trace_textures scene_textures bake_textures meso" gpu=textures ;;
         tools/bake/import/*) unit="gltf picture_path bake hostile" gpu=gltf_pictures ;;
-        tools/bake/mesh/*) unit="bake_detail creases trace surface masks bake_rays bake_blocks" gpu=lods ;;
-        tools/bake/scene/*) unit="models placement bake_groups bake_merge bake_placement bake_limits bake" gpu=live ;;
+        tools/bake/mesh/*) unit="bake_detail gltf creases trace surface masks bake_rays bake_blocks" gpu=lods ;;
+        tools/bake/scene/*) unit="gltf models placement bake_groups bake_merge bake_placement bake_limits bake" gpu=live ;;
         tools/bake/shader/*) unit="code whole_vectors first_look sdfc bake bake_limits" gpu=frame ;;
         tools/bake/*) unit="first_look bake bake_lights bake_limits programs" gpu=frame ;;
         tools/sdfc/*) unit="sdfc sdf_shapes reflected_sdf" gpu="sdf_looks stiff" ;;
