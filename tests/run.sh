@@ -65,7 +65,7 @@ not_swiftshader+="test_viewports test_window "
 
 # What these draw takes less than to compile it. On the first driver Mesa's rasteriser compiles them as lavapipe 25 does
 # everything (tests/drivers.sh): for vectors of 128 bits, without its optimiser.
-compiled=" test_cli test_devices test_gltf_pictures test_gpu_av test_reference test_upscale "
+compiled=" test_cli test_devices test_gltf_pictures test_gpu_av test_upscale "
 
 # A rasteriser's own threads are in the way of the programs beside it: a tenth of the time.
 export LP_NUM_THREADS=${LP_NUM_THREADS-0}

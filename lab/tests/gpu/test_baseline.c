@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 64, HEIGHT = 36 };
+enum { WIDTH = 60, HEIGHT = 36 };
 
 static masu_baseline baseline;
 
