@@ -368,7 +368,6 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                    p->source,
                                    p->define, /* NULL ends the list */
                                    NULL};
-    const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
     const char *const optimise[] = {"spirv-opt",
                                     "--target-env=vulkan1.1",
                                     "-O",
@@ -378,14 +377,12 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                     "-o",
                                     p->optimised,
                                     NULL};
-    const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.0", p->optimised, NULL};
+    const char *const check[] = {"spirv-val", "--target-env", "vulkan1.0", p->optimised, NULL};
     const struct {
         const char *const *arguments;
         const char *package;
-    } steps[] = {{compile, "glslang-tools"},
-                 {check, "spirv-tools"},
-                 {optimise, "spirv-tools"},
-                 {recheck, "spirv-tools"}};
+    } steps[] = {
+        {compile, "glslang-tools"}, {optimise, "spirv-tools"}, {check, "spirv-tools"}};
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         masu_cli_progress("%s %s", steps[i].arguments[0], glsl_path);
         if (!run_tool(steps[i].arguments, steps[i].package, directory, glsl_path)) return false;

@@ -3,9 +3,9 @@
  *
  * The march shader and its headers are part of masu-bake (scene_sources.h, made by the build). They
  * are written to a temporary directory together with sdf_scene.glsl, which contains one #define per
- * parameter and the scene's own text. The steps are glslangValidator, spirv-val, spirv-opt,
- * whole_vectors.h and spirv-val again, because the optimiser can have bugs too. docs/scene.md
- * lists what the GLSL must define. */
+ * parameter and the scene's own text. The steps are glslangValidator, spirv-opt,
+ * whole_vectors.h and spirv-val, which checks the work of all three. docs/scene.md lists what the
+ * GLSL must define. */
 #ifndef MASU_BAKE_SDF_H
 #define MASU_BAKE_SDF_H
 
