@@ -151,13 +151,14 @@ $(foreach c,$(ALL_CLASSES),$(if $(call object_like,$c),$(eval $(call same_object
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;
 # hence the pragmas.
-# Of the headers only those that these shaders or a scene's own text include: masu-bake writes all texts for each scene.
+# The headers that these shaders, or the text generated for a scene, include directly or through others. masu-bake
+# writes all of these files for each scene, so no other header is in the list.
 SCENE_INCLUDES := $(shell awk -v from='$(SCENE_SHADERS) sdf/hand_written.glsl' ' \
     FNR == 1 { name = substr(FILENAME, 9); there[name] = 1 } \
     /^ *.include "/ { split($$0, quoted, "\""); uses[name] = uses[name] " " quoted[2] } \
-    END { n = split(from, todo); for (i = 1; i <= n; i++) { count = split(uses[todo[i]], used); \
-        for (k = 1; k <= count; k++) if (there[used[k]] && !seen[used[k]]++) todo[++n] = used[k]; \
-        print "shaders/" todo[i] } }' $(addprefix shaders/,$(SCENE_SHADERS)) $(wildcard shaders/*/*.h shaders/*/*.glsl))
+    END { n = split(from, found); for (i = 1; i <= n; i++) { count = split(uses[found[i]], used); \
+        for (k = 1; k <= count; k++) if (there[used[k]] && !seen[used[k]]++) found[++n] = used[k]; \
+        print "shaders/" found[i] } }' $(addprefix shaders/,$(SCENE_SHADERS)) $(wildcard shaders/*/*.h shaders/*/*.glsl))
 SCENE_TEXTS := $(patsubst shaders/%,$(MADE)/gen/glsl/%,$(sort $(SCENE_INCLUDES))) $(MADE)/gen/bindings.h \
     $(foreach p,$(PUSHES),$(if $(filter $(p).%,$(SCENE_SHADERS)),$(MADE)/gen/push/$(p).h))
 

@@ -63,8 +63,8 @@ not_swiftshader+="test_specular_filters test_specular_sdf test_specular_textures
 not_swiftshader+="test_sprites test_temporal test_terms test_texture_order test_transparents test_truth "
 not_swiftshader+="test_viewports test_window "
 
-# What these draw takes less than to compile it. On the first driver Mesa's rasteriser compiles them as lavapipe 25 does
-# everything (tests/drivers.sh): for vectors of 128 bits, without its optimiser.
+# These programs spend more time on compiling shaders than on drawing. On the system driver their shaders are compiled
+# for vectors of 128 bits and without LLVM's optimiser, as lavapipe 25 compiles those of all tests (tests/drivers.sh).
 compiled=" test_cli test_devices test_gltf_pictures test_gpu_av test_upscale "
 
 # A rasteriser's own threads are in the way of the programs beside it: a tenth of the time.

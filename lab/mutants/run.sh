@@ -8,7 +8,7 @@
 # shader that they hold. After a mutant what it changed is copied back. Needs a tree that is built; changes nothing in
 # it. After a change of the tree remove $MUTANTS_DIR.
 #
-# DRAWN=lab/mutants/drawn.tsv
+# DRAWN=lab/mutants/drawn.tsv: the list
 # WANTED=12        of each operator, with a verdict other than no-compile
 # ONLY='3 17'      these numbers
 # DRIVERS=system   drivers of the GPU tests, as of `make gpu`; none: only the unit tests and scripts of the subject

@@ -252,7 +252,7 @@ static size_t wrapped_texel(int32_t x, int32_t y, int32_t size) {
     return (size_t)y * (size_t)size + (size_t)x;
 }
 
-/* Of a bilinear lookup. */
+/* The four texels of a bilinear lookup and their weights. */
 typedef struct corners {
     size_t texel[4];
     double weight[4];
